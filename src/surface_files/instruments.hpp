@@ -26,6 +26,13 @@ bool looks_like_metropro(std::string_view bytes);
 // The phase data as heights.
 SurfaceFile parse_metropro(std::string_view bytes, const std::filesystem::path& file);
 
+// The text files of MetroPro and Mx: "Zygo ASCII Data File" with phases as whole numbers, and "Zygo XYZ Data File" with
+// a pixel and its height a line (facts: Zygo's MetroPro Reference Guide; how prysm writes the first).
+bool looks_like_zygo_text(std::string_view bytes);
+// The heights of XYZ files have the unit of `scale`, or else MetroPro's um, with a warning, since Mx writes the unit
+// that is set there. A pitch is asked for where the file's lateral resolution is 0.
+SurfaceFile parse_zygo_text(std::string_view bytes, const std::filesystem::path& file, const ImageScale& scale);
+
 // NMS, NanoFocus' confocal microscopes (facts: surfalize; a real file).
 bool looks_like_nms(std::string_view bytes);
 // Uint16 codes from the lowest to the highest height; no code for not-measured points is known.

@@ -2,10 +2,10 @@
 
 #include "core/parsing/byte_reader.hpp"
 #include "surface/metres.hpp"
+#include "surface_files/metropro_facts.hpp"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 
 namespace vkfv::surface {
 namespace {
@@ -16,9 +16,6 @@ constexpr std::size_t format_at = 4, header_size_at = 6, intensity_bytes_at = 60
                       time_at = 76, comment_at = 80, comment_length = 82, scale_at = 164, wavelength_at = 168,
                       obliquity_at = 176, pitch_at = 184, resolution_at = 218, inverted_at = 232, serial_at = 242,
                       least_header = 570;
-// Steps in a wave, by the resolution's number.
-constexpr std::array resolutions = {4096, 32768, 131072};
-constexpr std::int32_t first_not_measured = 2147483640;
 
 template <class Value>
 Value swapped(Value value) {
@@ -30,21 +27,6 @@ Value swapped(Value value) {
 template <class Value>
 Value big_endian(const ByteReader& file, std::uint64_t offset, const char* what) {
     return swapped(file.at<Value>(offset, what));
-}
-
-std::string date_after_1970(std::int32_t seconds) {
-    using namespace std::chrono;
-    const sys_seconds time{std::chrono::seconds(seconds)};
-    const auto day = floor<days>(time);
-    const year_month_day date(day);
-    const hh_mm_ss clock(time - day);
-    const DateTime parts{int{date.year()},
-                         static_cast<int>(unsigned{date.month()}),
-                         static_cast<int>(unsigned{date.day()}),
-                         static_cast<int>(clock.hours().count()),
-                         static_cast<int>(clock.minutes().count()),
-                         static_cast<int>(clock.seconds().count())};
-    return parts.valid() ? known_date(parts.text()) : std::string();
 }
 
 } // namespace
@@ -79,11 +61,11 @@ SurfaceFile parse_metropro(std::string_view bytes, const std::filesystem::path& 
     file.check_spacing(pitch, "lateral resolution", pitch_at);
     result.map.pitch_x = result.map.pitch_y = pitch;
     const auto resolution = big_endian<std::uint16_t>(file, resolution_at, "phase resolution");
-    if (resolution >= resolutions.size())
+    if (resolution >= metropro::resolutions.size())
         file.fail(resolution_at, "phase resolution", fmt::format("{}", resolution), "0, 1 or 2");
     const double sign = big_endian<std::int16_t>(file, inverted_at, "inversion") != 0 ? -1 : 1;
     const double step = sign * length(scale_at, "scale") * length(obliquity_at, "obliquity") *
-                        length(wavelength_at, "wavelength") / resolutions[resolution]; // metres
+                        length(wavelength_at, "wavelength") / metropro::resolutions[resolution]; // metres
     if (!std::isfinite(step) || step == 0)
         file.fail(scale_at, "scale, wavelength, obliquity", fmt::format("{}", step), "a step of heights");
     result.map.height = Grid<double>(columns, rows);
@@ -91,13 +73,14 @@ SurfaceFile parse_metropro(std::string_view bytes, const std::filesystem::path& 
     for (int row = result.map.rows() - 1; row >= 0; --row)
         for (int column = 0; column < result.map.columns(); ++column, ++index) {
             const std::int32_t phase = swapped(element<std::int32_t>(points, index));
-            result.map.height(column, row) = phase >= first_not_measured ? std::numeric_limits<double>::quiet_NaN()
-                                                                         : height_from_metres(step * phase);
+            result.map.height(column, row) = phase >= metropro::first_not_measured
+                                                 ? std::numeric_limits<double>::quiet_NaN()
+                                                 : height_from_metres(step * phase);
         }
     const auto comment = file.bytes(comment_at, comment_length, "comment");
     result.provenance = {.creator = "MetroPro",
                          .manufacturer = "Zygo",
-                         .date = date_after_1970(big_endian<std::int32_t>(file, time_at, "time")),
+                         .date = metropro::date_after_1970(big_endian<std::int32_t>(file, time_at, "time")),
                          .comment = plain_line(comment.substr(0, comment.find('\0')))};
     if (const auto serial = big_endian<std::uint16_t>(file, serial_at, "serial number"); serial > 0)
         result.provenance.serial = fmt::format("{}", serial);

@@ -49,7 +49,13 @@ struct UnscaledFormat {
     SurfaceFile (*parse)(std::string_view bytes, const std::filesystem::path& file, const ImageScale& scale);
 };
 constexpr UnscaledFormat unscaled_formats[] = {{looks_like_height_image, parse_height_image},
-                                               {looks_like_npy, parse_npy}};
+                                               {looks_like_npy, parse_npy},
+                                               {looks_like_zygo_text, parse_zygo_text}};
+
+// Null: none that is known.
+const char* kind_of_picture(std::string_view bytes) {
+    return bytes.starts_with("\x89PNG") ? "PNG" : bytes.starts_with("\xff\xd8\xff") ? "JPEG" : nullptr;
+}
 
 SurfaceFile parse_surface(std::string_view bytes, const std::filesystem::path& path, const ImageScale& scale,
                           Checksums checksums) {
@@ -65,10 +71,18 @@ SurfaceFile parse_surface(std::string_view bytes, const std::filesystem::path& p
             refuse_second_scale(path, scale);
             return parse(bytes, path);
         }
+    if (const char* kind = kind_of_picture(bytes))
+        refuse_file(path, "", fmt::format("a picture ({}), whose values have no scale", kind), "a file of heights",
+                    "Save the heights as TIFF, and give --pitch_um and --unit_um; a specimen of kind \"image\" takes "
+                    "pictures as they are.");
+    if (bytes.starts_with("\x89HDF\r\n"))
+        refuse_file(path, "", "an HDF5 file, such as Zygo's .datx or a .mat or .h5 of others", "a surface file",
+                    "Save it in Mx as .dat, .xyz or .sdf; from other programs as X3P, SDF or NPY.");
     if (!bytes.empty() && named_like_height_table(name_of(path)))
         return parse_height_table(bytes, path, scale);
     refuse_file(path, "", "a file of unknown kind",
-                "an X3P, SUR, SDF, AL3D, GSF, GWY, OPD, MetroPro, NMS, PLU, TIFF, OpenEXR or NPY file, or a table of "
+                "an X3P, SUR, SDF, AL3D, GSF, GWY, OPD, MetroPro, Zygo text, NMS, PLU, TIFF, OpenEXR or NPY file, or a "
+                "table of "
                 "heights named .csv, .txt, .asc or .xyz",
                 "Export the surface in one of these formats.");
 }

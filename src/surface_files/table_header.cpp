@@ -31,9 +31,9 @@ std::string plain_key(std::string_view text) {
     return key;
 }
 
-// "x [mm]", "z (um)" or "Z/nm"; none without a unit of length.
+// "x [mm]", "z (um)", "z <um>" or "Z/nm"; none without a unit of length.
 std::optional<double> unit_in_name(std::string_view name) {
-    for (const std::string_view brackets : {"[]", "()"}) {
+    for (const std::string_view brackets : {"[]", "()", "<>"}) {
         const auto open = name.rfind(brackets[0]);
         const auto close = name.rfind(brackets[1]);
         if (open != std::string_view::npos && close != std::string_view::npos && open < close)
@@ -192,9 +192,12 @@ TableHeader table_header(std::span<const std::string_view> lines, std::size_t co
     const auto take_names = [&](std::string_view names, const std::vector<std::string_view>& cells, std::size_t count) {
         if (cells.size() != count)
             return false;
+        // A line below the names may have the units alone.
+        const bool alone =
+            std::ranges::all_of(cells, [](std::string_view cell) { return mm_per_unit(cell).has_value(); });
         std::array<std::optional<double>, 3> units;
         for (std::size_t k = 0; k < std::min(count, units.size()); ++k)
-            units[k] = unit_in_name(cells[k]);
+            units[k] = alone ? mm_per_unit(cells[k]) : unit_in_name(cells[k]);
         if (std::ranges::none_of(units, [](const auto& unit) { return unit.has_value(); }))
             return false;
         header.column_units = units;

@@ -90,7 +90,7 @@ int main(int argument_count, char** arguments) {
                                 .date = "2026-01-31T12:34:56Z",
                                 .comment = "two\nlines"};
     for (const char* reader : {"x3p", "sur", "sdf", "al3d", "height_image", "height_table", "gsf", "gwy", "npy", "opd",
-                               "metropro", "nms", "plu"})
+                               "metropro", "zygo_text", "nms", "plu"})
         fs::create_directories(root / reader);
     const auto whole = [&](const char* reader, const std::string& name, bool gaps) {
         write_surface(root / reader / name, wave(gaps), provenance);
@@ -165,6 +165,11 @@ int main(int argument_count, char** arguments) {
         const std::string bytes = vkfv::test::instrument_file(ending);
         write(root / reader / "whole", bytes);
         write_cuts(root / reader, "whole", bytes);
+    }
+    for (const auto& [name, text] :
+         {std::pair{"phases", vkfv::test::zygo_phases()}, {"points", vkfv::test::zygo_points()}}) {
+        write(root / "zygo_text" / name, text);
+        write_cuts(root / "zygo_text", name, text);
     }
     write(root / "plu" / "rows_largest", with(vkfv::test::plu_file(), 500, 0xffffffffu));
     write(root / "nms" / "offset_largest", with(vkfv::test::nms_file(), 1352, 0xffffffffu));

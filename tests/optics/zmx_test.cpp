@@ -10,6 +10,7 @@
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <iterator>
@@ -56,6 +57,11 @@ std::string digest(const ZmxLens& lens) {
         text += std::to_string(std::bit_cast<std::uint64_t>(wavelength)) + "\n";
     }
     return text + std::to_string(lens.primary_wavelength_um);
+}
+
+std::string with_cr(std::string text) {
+    std::ranges::replace(text, '\n', '\r');
+    return text;
 }
 
 std::string with_crlf(const std::string& text) {
@@ -156,6 +162,7 @@ TEST(Zmx, IsTheSameInEveryEncoding) {
         const auto expected = digest(parsed(text));
         EXPECT_EQ(digest(parsed(with_crlf(text))), expected) << name;
         EXPECT_EQ(digest(parsed("\xef\xbb\xbf" + text)), expected) << name;
+        EXPECT_EQ(digest(parsed(with_cr(text))), expected) << name;
         EXPECT_EQ(digest(parsed(as_utf16(with_crlf(text), true))), expected) << name;
         EXPECT_EQ(digest(parsed(as_utf16(text, false))), expected) << name;
     }

@@ -86,6 +86,21 @@ inline std::string metropro_file() {
     return bytes;
 }
 
+// MetroPro's header as text, up to its "#". Two rows of three phases, whose origin is (10, 20).
+inline std::string zygo_header(const std::string& title, const std::string& pitch = "1e-06") {
+    return title +
+           "\n0 9 1 0 \"Sat Jul 23 2011\"\n0 0 0 0 0 0\n10 20 3 2\n\"a part\"\n\"17\"\n\"\"\n0 0.5 4.096e-07 0 1 0 " +
+           pitch + " 1311439776\n3 2 0 0 0 0 \"\"\n0 0 0 0 0 0 0 0 0 0\n0 1 20 2 0 0 0 0 0\n0 \"\"\n1 0\n\"\"\n#\n";
+}
+// Steps of 0.05 nm, in lines that do not end with the rows.
+inline std::string zygo_phases() {
+    return zygo_header("Zygo ASCII Data File - Format 2") + "#\n20000 40000 60000 80000 \n2147483640 120000\n#\n";
+}
+inline std::string zygo_points() {
+    return zygo_header("Zygo XYZ Data File - Format 1") +
+           "10 20 1.0\n11 20 2.0\n12\t20\t3.0\n10 21 4.0\n11 21 No Data\n12 21 6.0\n#\n";
+}
+
 inline std::string nms_file() {
     std::string bytes(1400, '\0');
     put(bytes, 12, std::uint32_t{65535});

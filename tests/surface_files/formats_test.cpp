@@ -294,6 +294,51 @@ TEST(SurfaceFormats, FilesOfInstruments) {
     }
 }
 
+TEST(SurfaceFormats, TextOfZygo) {
+    for (const std::string& text : {test::zygo_phases(), test::zygo_points()}) {
+        ASSERT_TRUE(looks_like_zygo_text(text));
+        const SurfaceFile file = parse_zygo_text(text, "a.xyz", {});
+        const HeightMap& map = file.map;
+        ASSERT_EQ(map.columns(), 3);
+        ASSERT_EQ(map.rows(), 2);
+        EXPECT_NEAR(map.pitch_x, 1e-3, 1e-12);
+        const std::vector<double> um = {4, not_measured, 6, 1, 2, 3};
+        for (std::size_t k = 0; k < um.size(); ++k)
+            if (std::isnan(um[k]))
+                EXPECT_TRUE(std::isnan(map.height.values[k])) << k;
+            else
+                EXPECT_NEAR(map.height.values[k], um[k] * 1e-3, 1e-12) << k;
+        EXPECT_EQ(file.provenance.serial, "17");
+        EXPECT_EQ(file.provenance.date, "2011-07-23T16:49:36Z");
+    }
+    for (std::size_t length = 20; length + 10 < test::zygo_phases().size(); length += 5) {
+        EXPECT_THROW((void)parse_zygo_text(test::zygo_phases().substr(0, length), "a.asc", {}), InputError) << length;
+    }
+    // What XYZ files do not say: the unit, which Mx lets its user choose, and sometimes the pitch.
+    EXPECT_EQ(parse_zygo_text(test::zygo_points(), "a.xyz", {}).warnings.size(), 1U);
+    const SurfaceFile waves = parse_zygo_text(test::zygo_points(), "a.xyz", {.pitch = {}, .unit = 0.6328e-3});
+    EXPECT_TRUE(waves.warnings.empty());
+    EXPECT_NEAR(waves.map.height(2, 1), 3 * 0.6328e-3, 1e-12);
+    std::string text = test::zygo_points();
+    text.replace(text.find("1e-06"), 5, "0");
+    EXPECT_THROW((void)parse_zygo_text(text, "a.xyz", {}), InputError);
+    EXPECT_EQ(parse_zygo_text(text, "a.xyz", {.pitch = 0.002, .unit = {}}).map.pitch_y, 0.002);
+    EXPECT_EQ(parse_zygo_text(test::zygo_points(), "a.xyz", {.pitch = 0.002, .unit = 1e-3}).warnings.size(), 1U);
+    EXPECT_THROW((void)parse_zygo_text(test::zygo_phases(), "a.asc", {.pitch = {}, .unit = 1e-3}), InputError);
+    // Heights that fall where phases would rise, and points that the header does not name.
+    text = test::zygo_phases();
+    text.replace(text.find("20 2 0 0 0 0 0"), 14, "20 2 0 0 0 1 0");
+    EXPECT_NEAR(parse_zygo_text(text, "a.asc", {}).map.height(0, 1), -1e-3, 1e-12);
+    for (const auto& [from, to] : {std::pair<std::string, std::string>{"10 20 3 2", "10 20 99999999 2"},
+                                   {"12\t20\t3.0", "13 20 3.0"},
+                                   {"10 21 4.0", "10 21 4.0.0"},
+                                   {"10 21 4.0", "10 21"}}) {
+        text = test::zygo_points();
+        text.replace(text.find(from), from.size(), to);
+        EXPECT_THROW((void)parse_zygo_text(text, "a.xyz", {}), InputError) << to;
+    }
+}
+
 // Vision64 names its block otherwise.
 TEST(SurfaceFormats, OpdOfEveryNameOfItsBlock) {
     const std::string bytes = instrument_file("opd");

@@ -82,7 +82,8 @@ TEST(TableStatements, UnitsInTheNamesOfColumnsAreUsed) {
     const std::string points = "0,0,5\n0.002,0,6\n0,0.002,7\n0.002,0.002,8\n";
     for (const char* names :
          {"x [mm],y [mm],z [um]", "X (mm);Y (mm);Z (\xC2\xB5m)", "x/mm,y/mm,z/\xCE\xBCm",
-          "# x [mm], y [mm], z [\xC2\xB5m]", "\"x [mm]\",\"y [mm]\",\"height [micron]\"", "# x (mm) y (mm) z (um)"}) {
+          "# x [mm], y [mm], z [\xC2\xB5m]", "x,y,z\nmm,mm,um", "x\ty\tz\n[mm]\t[mm]\t[um]", "X<mm>,Y<mm>,Z<um>",
+          "\"x [mm]\",\"y [mm]\",\"height [micron]\"", "# x (mm) y (mm) z (um)"}) {
         const SurfaceFile file = table(std::string(names) + "\n" + points);
         EXPECT_THAT(heights_of(file), ElementsAre(near(7), near(8), near(5), near(6))) << names;
         EXPECT_THAT(file.map.pitch_x, near(0.002)) << names;
@@ -98,7 +99,10 @@ TEST(TableStatements, UnitsInTheNamesOfColumnsAreUsed) {
     // A matrix has one unit.
     EXPECT_THAT(heights_of(table("Height [nm]\n1000,2000\n3000,4000\n", {.pitch = um, .unit = {}})),
                 ElementsAre(near(1), near(2), near(3), near(4)));
-    // Brackets without a unit of length say nothing.
+    EXPECT_THAT(heights_of(table("Height\nnm\n1000,2000\n3000,4000\n", {.pitch = um, .unit = {}})),
+                ElementsAre(near(1), near(2), near(3), near(4)));
+    // Brackets without a unit of length say nothing, nor does a line of which one word alone is a unit.
+    EXPECT_THROW((void)table("x,y,z\npx,px,um\n" + points), InputError);
     EXPECT_THROW((void)table("x [px],y [px],z [V]\n" + points), InputError);
 }
 
@@ -124,7 +128,9 @@ TEST(TableStatements, TextOfAnyEncoding) {
         utf16 += {character, '\0'};
         unmarked += {character, '\0'};
     }
-    for (const std::string& bytes : {text, latin1, utf16, unmarked, "\xEF\xBB\xBF" + text})
+    std::string old_macintosh = text;
+    std::ranges::replace(old_macintosh, '\n', '\r');
+    for (const std::string& bytes : {text, latin1, utf16, unmarked, "\xEF\xBB\xBF" + text, old_macintosh})
         EXPECT_THAT(heights_of(table(bytes, {.pitch = um, .unit = {}})),
                     ElementsAre(near(1), near(2), near(3), near(4)));
 }

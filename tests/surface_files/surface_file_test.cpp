@@ -737,6 +737,9 @@ TEST_F(SurfaceFiles, NeitherUnknownFilesNorNames) {
     expect_refused(folder_, "a directory");
     expect_refused(write("empty.x3p", ""), "unknown kind");
     expect_refused(write("text.x3p", "not a surface"), "unknown kind");
+    expect_refused(write("a.datx", "\x89HDF\r\n\x1a\n"), "an HDF5 file");
+    expect_refused(write("depth.png", "\x89PNG\r\n\x1a\n"), "a picture (PNG)");
+    expect_refused(write("depth.jpg", "\xff\xd8\xff\xe0"), "a picture (JPEG)");
     EXPECT_THROW(write_surface(folder_ / "a.png", letter_map()), InputError);
     EXPECT_THROW(write_surface(folder_ / "none" / "a.x3p", letter_map()), RunError);
     HeightMap wide = letter_map();

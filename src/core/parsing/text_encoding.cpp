@@ -91,9 +91,7 @@ bool is_utf8(std::string_view text) {
     return true;
 }
 
-} // namespace
-
-std::string as_utf8(std::string_view bytes) {
+std::string in_utf8(std::string_view bytes) {
     if (const auto order = order_of_utf16(bytes)) {
         const bool marked = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
         return utf8_of_utf16(bytes.substr(marked ? 2 : 0), *order);
@@ -108,6 +106,16 @@ std::string as_utf8(std::string_view bytes) {
     text.reserve(bytes.size() + bytes.size() / 8);
     for (const char byte : bytes) { // Latin-1: a byte is its code point
         append_utf8(text, static_cast<unsigned char>(byte));
+    }
+    return text;
+}
+
+} // namespace
+
+std::string as_utf8(std::string_view bytes) {
+    std::string text = in_utf8(bytes);
+    if (text.find('\n') == std::string::npos) {
+        std::ranges::replace(text, '\r', '\n');
     }
     return text;
 }
