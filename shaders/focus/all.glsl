@@ -6,6 +6,7 @@
 #include "focus/modified_laplacian.glsl"
 #include "focus/brenner.glsl"
 #include "focus/wavelet.glsl"
+#include "focus/gradient_and_curvature.glsl"
 #include "focus/response.glsl"
 #include "focus/window.glsl"
 #include "focus/peak.glsl"

@@ -5,7 +5,8 @@ const int FOCUS_TENENGRAD = 1;
 const int FOCUS_MODIFIED_LAPLACIAN = 2;
 const int FOCUS_BRENNER = 3;
 const int FOCUS_WAVELET = 4;
-const int FOCUS_MEASURE_COUNT = 5;
+const int FOCUS_GRADIENT_AND_CURVATURE = 5;
+const int FOCUS_MEASURE_COUNT = 6;
 
 const int PEAK_GAUSSIAN = 0;
 const int PEAK_PARABOLA = 1;

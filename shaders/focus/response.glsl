@@ -1,7 +1,12 @@
 // What a focus measure finds at one pixel, before it is gathered over the window. The energies (squared responses) of
-// all channels are added. The modified Laplacian is a sum of magnitudes, so the root is taken at the pixel; all others
-// are energies, and the root is taken after the window. The standard deviation has no response of its own: it is made
-// in the window (standard_deviation.glsl).
+// all channels are added. Some measures are sums of magnitudes, so the root is taken at the pixel; all others are
+// energies, and the root is taken after the window. The standard deviation has no response of its own: it is made in
+// the window (standard_deviation.glsl).
+
+// Whether the window adds magnitudes.
+VKFV_FUNCTION bool focus_adds_magnitudes(int measure) {
+    return measure == FOCUS_MODIFIED_LAPLACIAN || measure == FOCUS_GRADIENT_AND_CURVATURE;
+}
 
 VKFV_SCENE_FUNCTION real focus_response(VKFV_SCENE_PARAMETER FocusPlan plan, int column, int row) {
     real energy = real(0.0);
@@ -15,9 +20,11 @@ VKFV_SCENE_FUNCTION real focus_response(VKFV_SCENE_PARAMETER FocusPlan plan, int
             energy = energy + brenner_energy(VKFV_SCENE plan, channel, column, row);
         } else if (plan.measure == FOCUS_WAVELET) {
             energy = energy + wavelet_energy(VKFV_SCENE plan, channel, column, row);
+        } else if (plan.measure == FOCUS_GRADIENT_AND_CURVATURE) {
+            energy = energy + gradient_and_curvature_energy(VKFV_SCENE plan, channel, column, row);
         }
     }
-    return plan.measure == FOCUS_MODIFIED_LAPLACIAN ? root(energy) : energy;
+    return focus_adds_magnitudes(plan.measure) ? root(energy) : energy;
 }
 
 // False: the window makes the measure of the channels alone.

@@ -90,6 +90,6 @@ VKFV_SCENE_FUNCTION real focus_value(VKFV_SCENE_PARAMETER FocusPlan plan, int co
         level = level + quotient(sums.level, real(fields));
         energy = energy + sums.energy;
     }
-    real amplitude = plan.measure == FOCUS_MODIFIED_LAPLACIAN ? energy : root(energy);
+    real amplitude = focus_adds_magnitudes(plan.measure) ? energy : root(energy);
     return level > real(0.0) ? quotient(amplitude, level * root(real(plan.channels))) : real(0.0);
 }

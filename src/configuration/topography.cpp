@@ -31,9 +31,20 @@ ChoiceKey<Value> named(std::string name, const std::vector<std::string>& names, 
     return without_influence(ChoiceKey<Value>(std::move(name), options, fallback, std::move(meaning)));
 }
 
-const auto focus_measure =
-    named("focus_measure", topography::focus_measure_names(), topography::focus_measure_from_name,
-          defaults.focus_measure, "What focus is measured by.");
+constexpr int chosen_measure = -1;
+std::vector<ChoiceKey<int>::Option> measures() {
+    std::vector<ChoiceKey<int>::Option> options = {
+        {chosen_measure, "auto",
+         "as suits the noise: \"gradient-and-curvature\" for a camera's, \"modified-laplacian\" for images of others "
+         "with "
+         "next to none; \"wavelet\" for own stacks without a camera and where nothing is averaged along z"}};
+    for (const auto& name : topography::focus_measure_names()) {
+        options.push_back({static_cast<int>(topography::focus_measure_from_name(name)), name});
+    }
+    return options;
+}
+const ChoiceKey<int> focus_measure =
+    without_influence(ChoiceKey<int>("focus_measure", measures(), chosen_measure, "What focus is measured by."));
 const IntegerKey window = without_influence(
     IntegerKey("window_px", 3, 255, defaults.window_px, "Side of the window around a pixel, an odd number."));
 const auto window_shape = named("window_shape", topography::window_shape_names(), topography::window_shape_from_name,
@@ -199,7 +210,9 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     const TomlTable table = root.table_or_empty("topography");
     const Section section(table, topography_keys(), configuration);
     auto& options = configuration.topography;
-    options.focus_measure = section.choice(focus_measure);
+    const int measure = section.choice(focus_measure);
+    options.focus_measure =
+        measure == chosen_measure ? std::nullopt : std::optional(static_cast<topography::FocusMeasure>(measure));
     options.window_px = static_cast<int>(section.integer(window));
     if (options.window_px % 2 == 0) {
         section.fail(window, "an odd integer, so that the window has a central pixel",

@@ -153,6 +153,17 @@ std::optional<std::vector<int>> steps_of(const std::vector<double>& values, doub
     return steps;
 }
 
+constexpr std::size_t least_of_a_series = 3;
+
+// Names by what they are but for their numbers: their places.
+std::map<std::vector<std::string>, std::vector<std::size_t>> alike_names(const std::vector<std::string>& names) {
+    std::map<std::vector<std::string>, std::vector<std::size_t>> alike;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        alike[parts_of(names[k]).texts].push_back(k);
+    }
+    return alike;
+}
+
 } // namespace
 
 bool naturally_before(std::string_view a, std::string_view b) {
@@ -222,13 +233,8 @@ ImageOrder order_of_names(const std::vector<std::string>& names) {
 }
 
 std::vector<bool> of_one_series(const std::vector<std::string>& names) {
-    std::map<std::vector<std::string>, std::vector<std::size_t>> alike;
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        alike[parts_of(names[k]).texts].push_back(k);
-    }
-    constexpr std::size_t fewest = 3;
-    for (const auto& [texts, places] : alike) {
-        if (places.size() >= fewest &&
+    for (const auto& [texts, places] : alike_names(names)) {
+        if (places.size() >= least_of_a_series &&
             static_cast<double>(places.size()) >= share_of_a_series * static_cast<double>(names.size())) {
             std::vector<std::string> of_series;
             std::vector<bool> result(names.size(), false);
@@ -242,6 +248,20 @@ std::vector<bool> of_one_series(const std::vector<std::string>& names) {
         }
     }
     return std::vector<bool>(names.size(), true);
+}
+
+std::vector<std::size_t> several_series(const std::vector<std::string>& names) {
+    std::vector<std::size_t> first;
+    for (const auto& [texts, places] : alike_names(names)) {
+        std::vector<std::string> of_series;
+        for (const std::size_t k : places) {
+            of_series.push_back(names[k]);
+        }
+        if (places.size() >= least_of_a_series && 3 * places.size() >= names.size() && numbers_of(of_series)) {
+            first.push_back(places.front());
+        }
+    }
+    return first.size() > 1 ? first : std::vector<std::size_t>();
 }
 
 } // namespace vkfv::scan

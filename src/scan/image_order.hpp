@@ -37,4 +37,8 @@ ImageOrder order_of_names(const std::vector<std::string>& names);
 // least, three in all, and they differ in one number alone. Else all.
 std::vector<bool> of_one_series(const std::vector<std::string>& names);
 
+// The place of a name of each series, where a folder holds several (img_1 ... and aligned_img_1 ...): names that are
+// alike but for one number, at least three of them and a third of all. Empty: there are no two.
+std::vector<std::size_t> several_series(const std::vector<std::string>& names);
+
 } // namespace vkfv::scan

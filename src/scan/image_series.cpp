@@ -128,6 +128,13 @@ void ImageSeries::take_folder(const std::filesystem::path& path) {
     }
     std::ranges::sort(files); // the folder has no order of its own
     leave_out(files, of_one_series(names_with_endings(files)), path, "its name is not like those of the others");
+    if (const auto series = several_series(names_with_endings(files)); !series.empty()) {
+        std::vector<std::string> one_of_each;
+        std::ranges::transform(series, std::back_inserter(one_of_each),
+                               [&](std::size_t k) { return files[k].filename().string(); });
+        refuse_file(path, "", fmt::format("several series of images: those of {}", fmt::join(one_of_each, " and of ")),
+                    "one series in a folder", "Move the images of the others to folders of their own.");
+    }
     std::vector<images::ImageStatement> statements;
     std::ranges::transform(files, std::back_inserter(statements), images::image_statement);
     leave_out(files, of_one_size(statements), path, "it has another size or kind than the others");

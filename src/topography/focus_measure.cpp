@@ -55,8 +55,8 @@ Grid<float> grey(const Channels& channels) {
 }
 
 const std::vector<std::string>& focus_measure_names() {
-    static const std::vector<std::string> names = {"standard-deviation", "tenengrad", "modified-laplacian", "brenner",
-                                                   "wavelet"};
+    static const std::vector<std::string> names = {
+        "standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet", "gradient-and-curvature"};
     return names;
 }
 

@@ -24,13 +24,24 @@ enum class FocusMeasure {
     modified_laplacian = focus::f64::FOCUS_MODIFIED_LAPLACIAN, // mean of the modified Laplacian
     brenner = focus::f64::FOCUS_BRENNER,                       // root mean square of differences of pixels two apart
     wavelet = focus::f64::FOCUS_WAVELET,                       // root mean square of the detail bands
+    // mean magnitude of Sobel's gradient with second differences
+    gradient_and_curvature = focus::f64::FOCUS_GRADIENT_AND_CURVATURE,
 };
 
-// "standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet", in the order of FocusMeasure.
+// "standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet", "gradient-and-curvature", in the
+// order of FocusMeasure.
 const std::vector<std::string>& focus_measure_names();
 const std::string& name_of(FocusMeasure measure);
 // InputError for any other name.
 FocusMeasure focus_measure_from_name(std::string_view name);
+
+// What scatters least, or hardly more than the least (docs/topography.md): where a camera's noise counts; where the
+// place of texture alone makes the errors of heights; and in light that vkfv has traced without a camera.
+inline constexpr FocusMeasure where_noise_counts = FocusMeasure::gradient_and_curvature;
+inline constexpr FocusMeasure where_noise_is_low = FocusMeasure::modified_laplacian;
+inline constexpr FocusMeasure where_texture_is_traced = FocusMeasure::wavelet;
+// What measures the most points where there is no average along z, since images are few or curves narrow.
+inline constexpr FocusMeasure where_little_is_averaged = FocusMeasure::wavelet;
 
 enum class WindowShape { box, gaussian };
 

@@ -174,18 +174,22 @@ void FocusProbes::add(const Channels& image) {
     }
 }
 
+double FocusProbes::single_of(const Probe& probe, std::size_t image) const {
+    const auto pixels = probe.pixels();
+    Channels patch(static_cast<std::size_t>(channels_), Grid<float>(probe.columns, probe.rows));
+    auto from = probe.values.begin() + static_cast<std::ptrdiff_t>(image * patch.size() * pixels);
+    for (auto& channel : patch) {
+        std::copy_n(from, pixels, channel.values.begin());
+        from += static_cast<std::ptrdiff_t>(pixels);
+    }
+    return focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row);
+}
+
 // As images come rather than at the end, which all wait for.
 void FocusProbes::follow_singles() {
     const auto follow = [&](int k) {
         Probe& probe = probes_[static_cast<std::size_t>(k)];
-        const auto pixels = probe.pixels();
-        Channels patch(static_cast<std::size_t>(channels_), Grid<float>(probe.columns, probe.rows));
-        auto from = probe.values.end() - static_cast<std::ptrdiff_t>(patch.size() * pixels);
-        for (auto& channel : patch) {
-            std::copy_n(from, pixels, channel.values.begin());
-            from += static_cast<std::ptrdiff_t>(pixels);
-        }
-        probe.singles.push_back(focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row));
+        probe.singles.push_back(single_of(probe, static_cast<std::size_t>(images_ - 1)));
     };
     constexpr std::size_t pixels_a_thread = std::size_t{1} << 15; // some milliseconds
     const std::size_t threads = probes_.size() * probes_.front().pixels() / pixels_a_thread;
@@ -778,6 +782,40 @@ double FocusProbes::suitable_smoothing() const {
     constexpr double least_distance = 2, share_nearer = 0.05;
     return std::min(topography::suitable_smoothing(curve_width(), images_),
                     std::max(least_smoothing, distance_from_the_ends(share_nearer) / least_distance));
+}
+
+std::optional<double> FocusProbes::noise_share() const {
+    const auto found = texture_and_noise(axial_weights(suitable_smoothing()), noise(), noise_correlation());
+    return found ? std::optional(1 - found->share) : std::nullopt;
+}
+
+void FocusProbes::measure_by(FocusMeasure measure) {
+    if (measure == measure_) {
+        return;
+    }
+    measure_ = measure;
+    parallel_items(static_cast<int>(probes_.size()), [&](int k) {
+        Probe& probe = probes_[static_cast<std::size_t>(k)];
+        for (std::size_t image = 0; image < probe.singles.size(); ++image) {
+            probe.singles[image] = single_of(probe, image);
+        }
+    });
+}
+
+void FocusProbes::settle(TopographyOptions& options) {
+    // Noise alone then scatters heights by a hundredth of the curves' standard deviation, about as much as the place of
+    // texture does on a gentle slope (docs/topography.md).
+    constexpr double most_noise = 1e-3;
+    if (!options.focus_measure) {
+        const bool averaged = options.smoothing_steps.value_or(suitable_smoothing()) > 0;
+        options.focus_measure = !averaged                                ? where_little_is_averaged
+                                : noise_share().value_or(1) > most_noise ? where_noise_counts
+                                                                         : where_noise_is_low;
+        measure_by(*options.focus_measure);
+    }
+    if (!options.smoothing_steps) {
+        options.smoothing_steps = suitable_smoothing();
+    }
 }
 
 double suitable_smoothing(double curve_width, int images) {

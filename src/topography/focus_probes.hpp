@@ -17,6 +17,8 @@
 
 namespace vkfv::topography {
 
+struct TopographyOptions; // topography.hpp
+
 // Of fewer a quarter of the second differences along z is too few to be without texture.
 inline constexpr int least_images_for_correlation = 10;
 
@@ -113,6 +115,17 @@ class FocusProbes {
     // it would bring one maximum in twenty or more to an end of the scan. None of few_images.
     double suitable_smoothing() const;
 
+    // The share of the focus measure's energy that noise has at the maxima of the curves, in the mean of the probes,
+    // with the average along z that suits them. None where the probes do not tell it.
+    std::optional<double> noise_share() const;
+
+    // Goes over to another measure, as if it had been given at first.
+    void measure_by(FocusMeasure measure);
+
+    // Chooses what the options leave open. These probes are by their measure, or by where_noise_is_low, which is left
+    // for where_noise_counts unless noise has next to nothing of its energy.
+    void settle(TopographyOptions& options);
+
   private:
     struct Probe {
         int column = 0; // where its patch begins
@@ -129,6 +142,7 @@ class FocusProbes {
 
     // Of the image whose patches were added last.
     void follow_singles();
+    double single_of(const Probe& probe, std::size_t image) const;
 
     // Two images next to each other at a probe.
     struct PlaceOfImages {

@@ -1,11 +1,12 @@
 #include "core/messages/error.hpp"
 #include "core/threads/parallel_rows.hpp"
-#include "topography/height_uncertainty.hpp"
 #include "topography/hidden_levels.hpp"
 #include "topography/noise/curve_noise.hpp"
 #include "topography/places_of_maxima.hpp"
 #include "topography/texture_place.hpp"
 #include "topography/topography.hpp"
+#include "topography/uncertainty/height_uncertainty.hpp"
+#include "topography/uncertainty/texture_grain.hpp"
 
 #include <fmt/format.h>
 
@@ -102,8 +103,57 @@ void leave_out_chance(Topography& topography) {
 
 // Relative standard uncertainty of the width of the curves, by which maxima near an end of the scan are moved
 // (places_of_maxima.hpp). The width is found from the same images: a tenth is by how much less is found of curves three
-// images from an end than of the same curves in the middle of the scan.
-constexpr double width_uncertainty = 0.1;
+// images from an end than of the same curves in the middle of the scan. Gradients see coarser texture too, whose curves
+// have longer flanks: of theirs a fifth less is found.
+double width_uncertainty_of(FocusMeasure measure) {
+    return measure == FocusMeasure::gradient_and_curvature ? 0.2 : 0.1;
+}
+
+// A maximum that an end of the scan moves.
+struct NearEnd {
+    double found = std::numeric_limits<double>::quiet_NaN(); // in steps of the scan; NaN: no end moves it
+    PlacesByWidth::Width width{};                            // by this point's curve alone
+};
+
+// Widths by the curves within twice the window's reach, whose noise is partly another. NaN where no end moves a
+// maximum.
+Grid<double> widths_around(const Grid<NearEnd>& points, int reach) {
+    Grid<double> result(points.columns, points.rows, std::numeric_limits<double>::quiet_NaN());
+    if (std::ranges::all_of(points.values, [](const NearEnd& point) { return std::isnan(point.found); })) {
+        return result;
+    }
+    parallel_rows(points.columns, points.rows, [&](int from, int end) {
+        struct Sum {
+            double weight = 0, product = 0;
+            void add(double more, double of_products) {
+                weight += more;
+                product += of_products;
+            }
+        };
+        std::vector<Sum> columns(static_cast<std::size_t>(points.columns));
+        for (int row = from; row < end; ++row) {
+            for (int column = 0; column < points.columns; ++column) {
+                Sum& sum = columns[static_cast<std::size_t>(column)] = {};
+                for (int y = std::max(0, row - reach); y <= std::min(points.rows - 1, row + reach); ++y) {
+                    const NearEnd& point = points(column, y);
+                    sum.add(point.width.weight, point.width.weight * point.width.logarithm);
+                }
+            }
+            for (int column = 0; column < points.columns; ++column) {
+                if (std::isnan(points(column, row).found)) {
+                    continue;
+                }
+                Sum around;
+                for (int x = std::max(0, column - reach); x <= std::min(points.columns - 1, column + reach); ++x) {
+                    const Sum& sum = columns[static_cast<std::size_t>(x)];
+                    around.add(sum.weight, sum.product);
+                }
+                result(column, row) = around.weight > 0 ? around.product / around.weight : 0;
+            }
+        }
+    });
+    return result;
+}
 
 // Where the probes do not tell: texture of the noise's own spectrum, which fades as the stack's curves do.
 TextureAndNoise assumed(double gain, double curve_width) {
@@ -136,7 +186,8 @@ std::vector<double> readings_at(const std::vector<double>& places, const std::ve
 } // namespace
 
 StackEvaluator::StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes, CurveGrid curve_grid)
-    : options_(checked(options)), measure_(options.focus_measure), window_(options.window_px, options.window_shape),
+    : options_(checked(options)), measure_(options.focus_measure.value_or(where_noise_counts)),
+      window_(options.window_px, options.window_shape),
       axial_weights_(axial_weights(options.smoothing_steps.value_or(0))),
       neighbour_weights_(axial_weights_.size() > 1 ? axial_weights_ : std::vector<double>{1, 0.5}),
       energy_weights_(axial_weights_.size() > 1 ? axial_weights_ : std::vector<double>{1, 0.25}),
@@ -395,8 +446,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const PeakFinder finder{.method = options_.peak, .range = options_.peak_range_steps};
     StackFigures figures = figures_of_probes.get();
     const std::vector<double> places = places_of_maxima(axial_weights_, images, figures.curve_width_steps, finder);
-    const std::vector<double> of_wider_curves =
-        places_of_maxima(axial_weights_, images, (1 + width_uncertainty) * figures.curve_width_steps, finder);
+    const PlacesByWidth by_width(axial_weights_, images, figures.curve_width_steps, finder);
     const double step = (z_.back() - z_.front()) / (images - 1);
     const auto read =
         readings_.empty() ? std::vector<double>() : readings_at(places, points, readings_, axial_weights_);
@@ -404,10 +454,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         return read.empty() ? z_.front() + step * between(at, images, [&](std::size_t point) { return places[point]; })
                             : between(at, images, [&](std::size_t point) { return read[point]; });
     };
-    Grid<double> end_uncertainty(columns_, rows_); // of heights near an end of the scan
-    const auto end_uncertainty_at = [&](double at) {
-        return step * between(at, images, [&](std::size_t point) { return of_wider_curves[point] - places[point]; });
-    };
+    Grid<NearEnd> near_ends(columns_, rows_);
     const double whole_window =
         window_.pixels(4 * window_.radius(), 4 * window_.radius(), 2 * window_.radius(), 2 * window_.radius());
     const auto found = probes_->texture_and_noise(axial_weights_, noise_model, correlation);
@@ -436,15 +483,39 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
                     ? judge(curve, single, {image_noise, averaging, pixels / whole_window}, figures)
                     : PointState::dark;
         if (state == PointState::measured) {
-            result.height.height(column, row) = height_at(curve.at + curve.offset);
-            end_uncertainty(column, row) = end_uncertainty_at(curve.at + curve.offset);
+            const double found = curve.at + curve.offset;
+            result.height.height(column, row) = height_at(found);
+            if (by_width.feels_an_end(found)) {
+                const double bend = curve.largest > 0 ? curve.bend / curve.largest : 0;
+                near_ends(column, row) = {
+                    .found = found,
+                    .width = by_width.width(curve.at, curve.offset, curvature_at_maximum(bend, curve.offset))};
+            }
             result.height_noise(column, row) =
                 step * curve_noise.place(curve, std::pow(relative_noise(here, noise_model), 2), pixels / whole_window);
         }
     };
     planes_->visit_records(judge_point);
+    // Heights near an end are those of curves of their own width, and it tells how far they may be off.
+    const Grid<double> widths = widths_around(near_ends, 2 * window_.radius());
+    Grid<double> end_uncertainty(columns_, rows_);
+    const double wider = std::log(1 + width_uncertainty_of(measure_));
+    const double step_of_heights = readings_.empty() ? step : (readings_.back() - readings_.front()) / (images - 1);
+    for (std::size_t pixel = 0; pixel < widths.values.size(); ++pixel) {
+        if (const double width = widths.values[pixel]; !std::isnan(width)) {
+            const double found = near_ends.values[pixel].found, place = by_width.place(found, width);
+            result.height.height.values[pixel] +=
+                step_of_heights * (place - between(found, images, [&](std::size_t point) { return places[point]; }));
+            end_uncertainty.values[pixel] = step_of_heights * (by_width.place(found, width + wider) - place);
+        }
+    }
     const auto freed = std::async(std::launch::async, [planes = std::move(planes_)]() mutable { planes.reset(); });
     result.curves = curves_of(stack, of_curves, height_at);
+    for (std::size_t point = 0; point < curve_pixels_.size() && point < result.curves.peaks.size(); ++point) {
+        if (const std::size_t pixel = curve_pixels_[point]; !std::isnan(widths.values[pixel])) {
+            result.curves.peaks[point] = result.height.height.values[pixel];
+        }
+    }
     for (Grid<float>& channel : stack.all_in_focus)
         for (float& value : channel.values)
             value /= scale_;
@@ -459,7 +530,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     if (options_.repair_outliers)
         repair_outliers(result);
     result.height_uncertainty =
-        height_uncertainty(result.height.height, result.height_noise, options_.window_px, options_.window_shape);
+        height_uncertainty(result.height.height, result.height_noise, options_.window_px, options_.window_shape,
+                           grain_correlation(result.all_in_focus, measure_, window_));
     const HiddenLevels levels(levels_of_probes.get(), result.height.height, step, window_.radius());
     for (int row = 0; row < rows_; ++row) {
         for (int column = 0; column < columns_; ++column) {
@@ -480,13 +552,13 @@ Topography reconstruct(std::span<const Grid<float>> stack, std::span<const doubl
     if (stack.size() != z.size())
         throw std::invalid_argument("reconstruct: as many heights as images are needed");
     TopographyOptions settled = options;
-    if (!settled.smoothing_steps && !stack.empty()) {
-        FocusProbes probes(stack[0].columns, stack[0].rows, options.focus_measure,
+    if (!stack.empty() && !settled.settled()) {
+        FocusProbes probes(stack[0].columns, stack[0].rows, options.focus_measure.value_or(where_noise_is_low),
                            FocusWindow(options.window_px, options.window_shape));
         for (const auto& image : stack) {
             probes.add({image});
         }
-        settled.smoothing_steps = probes.suitable_smoothing();
+        probes.settle(settled);
     }
     StackEvaluator evaluator(settled);
     for (std::size_t k = 0; k < stack.size(); ++k)

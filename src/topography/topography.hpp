@@ -26,9 +26,9 @@
 //   along the surface's slope (texture_place.hpp).
 //
 // Near the ends of the scan the averages hold only the images there are. Their larger noise is reckoned with, and
-// heights are put right for curves as wide as the stack's (places_of_maxima.hpp); others, and those cut off by the end,
-// keep a part of what is drawn towards it. The two averages reach 6 smoothing_steps: plan the scan so much wider than
-// the specimen at either side, and a depth of focus at least.
+// heights are put right for curves as wide as those around the point (places_of_maxima.hpp); curves of another form
+// than a Gaussian keep a part of what is drawn towards the end. The two averages reach 6 smoothing_steps: plan the scan
+// so much wider than the specimen at either side, and a depth of focus at least.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -51,9 +51,10 @@ namespace vkfv::topography {
 inline constexpr double most_smoothing_steps = 100; // 1202 images in memory
 
 struct TopographyOptions {
-    FocusMeasure focus_measure = FocusMeasure::wavelet; // the least noise in tools/studies/focus_table
-    int window_px = 7;                                  // odd, at least 3
-    WindowShape window_shape = WindowShape::box;        // see FocusWindow
+    // None: what FocusProbes::settle() chooses; the evaluator is given one.
+    std::optional<FocusMeasure> focus_measure = where_little_is_averaged;
+    int window_px = 7;                           // odd, at least 3
+    WindowShape window_shape = WindowShape::box; // see FocusWindow
     PeakMethod peak = PeakMethod::gaussian;
     // Half width of the range around the maximum that fits, fit_residual and the number of peaks are of, in steps.
     int peak_range_steps = 3;
@@ -73,6 +74,9 @@ struct TopographyOptions {
     int most_peaks = 4;
     bool place_by_texture = true; // see texture_place.hpp
     bool repair_outliers = false; // see repair_outliers()
+
+    // Whether nothing is left to be chosen by the stack.
+    bool settled() const { return focus_measure && smoothing_steps; }
 };
 
 // What became of a point.

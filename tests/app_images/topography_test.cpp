@@ -289,6 +289,15 @@ TEST(Topography, DoubtsAboutTheHeightsOfImagesAreTold) {
         std::filesystem::rename(folder / "images" / name, folder / "images" / (std::string("new ") + name));
     }
     EXPECT_THAT(evaluate(folder, "images", "renamed").standard_error, HasSubstr("natural order"));
+    for (int k = 0; k < 8; ++k) {
+        write(fmt::format("aligned_{}.tif", k), 7);
+    }
+    const auto several = evaluate(folder, "images", "several");
+    EXPECT_EQ(several.exit_code, 2);
+    EXPECT_THAT(several.standard_error, HasSubstr("several series of images: those of aligned_0.tif and of z"));
+    for (int k = 0; k < 8; ++k) {
+        std::filesystem::remove(folder / "images" / fmt::format("aligned_{}.tif", k));
+    }
     for (const char* name : {"new z-5.tif", "new z-4.tif", "new z-2.tif", "z+2 copy.tif", "z+5.tif", "z-1.tif"}) {
         std::filesystem::remove(folder / "images" / name);
     }
@@ -714,6 +723,11 @@ TEST(ImageOrder, TellsAResultFromASeries) {
     EXPECT_THAT(scan::of_one_series({"z-1", "z+2", "z3"}), testing::Each(true));
     EXPECT_THAT(scan::of_one_series({"a1", "b1", "a2", "b2", "a3"}), testing::Each(true)); // no series
     EXPECT_THAT(scan::of_one_series({"a1_1", "a2_2", "a3_1", "a4_2", "out"}), testing::Each(true));
+    // What focus-stack leaves beside the photographs.
+    EXPECT_THAT(scan::several_series({"aligned_1", "pcb_1", "aligned_2", "pcb_2", "pcb_3", "aligned_3", "output"}),
+                testing::ElementsAre(0, 1));
+    EXPECT_THAT(scan::several_series({"a1", "b1", "a2", "b2", "a3"}), testing::IsEmpty());
+    EXPECT_THAT(scan::several_series({"a1", "a2", "a3", "a4", "b1", "c1", "d1"}), testing::IsEmpty());
 }
 
 } // namespace

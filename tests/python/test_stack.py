@@ -32,6 +32,100 @@ def places_of_maxima(averages, width):
     return numpy.interp(images, found, middles, left=numpy.nan, right=numpy.nan)
 
 
+class PlacesByWidth:
+    """Where curves lie, in steps, whose averaged maxima are found near an end of the scan: each by its own width."""
+
+    def __init__(self, averages, radius, width):
+        images = len(averages)
+        self.last_image, self.end = images - 1, min(2 * radius, (images - 1) / 2)
+        self.line = averages @ numpy.arange(images)
+        self.logarithms = numpy.arange(-6, 7) * numpy.log(2) / 4
+        self.tables = [self.table(averages, width * numpy.exp(logarithm)) for logarithm in self.logarithms]
+        found, place = self.tables[9][:2]
+        moved = found[abs(place - self.straight(found)) > 0.01]
+        self.felt = moved[-1] if len(moved) else 0
+
+    def table(self, averages, width):
+        """Rows of where the maximum is found, the Gaussian's middle, the logarithm's curvature, and the largest value's image."""
+        images, rows = numpy.arange(len(averages)), []
+        for middle in numpy.linspace(0, self.end, min(240, int(numpy.ceil(self.end / 0.05))) + 1):
+            curve = averages @ numpy.exp(-0.5 * ((images - middle) / width) ** 2)
+            at = curve.argmax()
+            if 0 < at < images[-1]:
+                found, curvature = maximum(*numpy.log(curve[at - 1:at + 2]))
+                found = self.end if middle == self.end else at + found
+                if found <= self.end and (not rows or found > rows[-1][0]):
+                    rows.append((found, middle, curvature, at))
+        return numpy.array(rows).T
+
+    def place_of(self, table, found):
+        below = self.straight(found) + table[1][0] - self.straight(table[0][0])
+        return numpy.where(found < table[0][0], numpy.maximum(0, below), numpy.interp(found, table[0], table[1]))
+
+    def straight(self, at):
+        return numpy.interp(at, numpy.arange(len(self.line)), self.line)
+
+    def curvatures(self, table, found, image):
+        """Of curves with the largest value at the same image."""
+        result = numpy.interp(found, table[0], table[2])
+        for k in numpy.unique(image):
+            here, same = image == k, table[3] == k
+            if same.sum() > 1:
+                at, values = table[0][same], table[2][same]
+                after = numpy.clip(numpy.searchsorted(at, found[here], side="right"), 1, len(at) - 1)
+                share = (found[here] - at[after - 1]) / (at[after] - at[after - 1])
+                result[here] = values[after - 1] + share * (values[after] - values[after - 1])
+        return numpy.where(found < table[0][0], numpy.nan, result)
+
+    def widths(self, found, image, curvature):
+        """Logarithms of the widths over the stack's, and their weights."""
+        known = numpy.log([self.curvatures(table, found, image) for table in self.tables])
+        wanted = numpy.log(curvature)
+        best, weight = numpy.full(found.shape, numpy.inf), numpy.zeros(found.shape)
+        step = self.logarithms[1] - self.logarithms[0]
+        for k in range(len(known) - 1):
+            fall = known[k] - known[k + 1]
+            here = self.logarithms[k] + step * (known[k] - wanted) / fall
+            better = (fall > 0) & (wanted <= known[k]) & (wanted >= known[k + 1]) & (abs(here) < abs(best))
+            best, weight = numpy.where(better, here, best), numpy.where(better, (fall / step) ** 2, weight)
+        if not numpy.isfinite(best).all():
+            raise ValueError("a curve that is wider or narrower than the table's")
+        return best, weight
+
+    def places(self, image, offset, curvature, measured, reach):
+        """Of a map of maxima; widths are means over `reach` pixels around."""
+        at = image + offset
+        lower = at < self.last_image / 2
+        found = numpy.where(lower, at, self.last_image - at)
+        near = measured & (found < self.felt)
+        logarithm, weight = (numpy.zeros(at.shape) for _ in range(2))
+        logarithm[near], weight[near] = self.widths(
+            found[near], numpy.where(lower, image, self.last_image - image)[near], curvature[near])
+        sums = [around(weight * logarithm, reach), around(weight, reach)]
+        width = numpy.clip(6 + sums[0] / numpy.where(sums[1] > 0, sums[1], 1) / (numpy.log(2) / 4), 0, 12)
+        narrow = numpy.minimum(width.astype(int), 11)
+        every = numpy.array([self.place_of(table, found) for table in self.tables])
+        rows, columns = numpy.indices(at.shape)
+        place = every[narrow, rows, columns] * (1 - width + narrow) + every[narrow + 1, rows, columns] * (width - narrow)
+        # Elsewhere the stack's width, by straight lines between the images.
+        points = numpy.arange(numpy.ceil(self.end) + 1)
+        of_stack = numpy.where(points < self.end, self.place_of(self.tables[6], points), points)
+        place = numpy.where(near, place, numpy.interp(found, points, of_stack))
+        return numpy.where(lower, place, self.last_image - place)
+
+
+def maximum(before, here, after):
+    """Of three logarithms of a curve: the distance of the maximum from the middle one, and the curvature."""
+    return 0.5 * (before - after) / (before - 2 * here + after), 2 * here - before - after
+
+
+def around(values, reach):
+    """Sums over squares about each pixel."""
+    rows, columns = values.shape
+    padded = numpy.pad(values, reach)
+    return sum(padded[y:y + rows, x:x + columns] for y in range(2 * reach + 1) for x in range(2 * reach + 1))
+
+
 class StackTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -89,15 +183,21 @@ class StackTest(unittest.TestCase):
         images = len(curves)
         largest = numpy.clip(curves.argmax(axis=0), 1, images - 2)
         rows, columns = numpy.indices(largest.shape)
-        before, here, after = (numpy.log(curves[largest + d, rows, columns]) for d in (-1, 0, 1))
-        offset = 0.5 * (before - after) / (before - 2 * here + after)
+        offset, curvature = maximum(*(numpy.log(curves[largest + d, rows, columns]) for d in (-1, 0, 1)))
         # The same evaluation without the flat: of the images as they are.
         plain = vkfv.evaluate(self.stack.folder, out=shared.folder() / "plain", topography={"place_by_texture": False})
-        heights = numpy.interp(largest + offset, numpy.arange(images), plain.results["focus_curves"]["z_um"])
         inside = plain.measured
         self.assertGreater(inside.mean(), 0.8)
+        share = axial_shares(settings["smoothing_steps"], images)
+        radius = int(numpy.ceil(3 * settings["smoothing_steps"]))
+        by_width = PlacesByWidth(share @ share, radius, plain.results["curves"]["curve_width_steps"])
+        places = by_width.places(largest, offset, curvature, inside, 2 * (settings["window_px"] // 2))
+        heights = self.stack.z[0] + (self.stack.z[1] - self.stack.z[0]) * places
         error = heights[inside] - plain.heights.values[inside]
         self.assertLess(numpy.sqrt(numpy.mean(error**2)), 1e-4)
+        # The wrong twin: all curves as wide as the stack's.
+        error = numpy.interp(largest + offset, numpy.arange(images), plain.results["focus_curves"]["z_um"]) - plain.heights.values
+        self.assertGreater(numpy.sqrt(numpy.mean(error[inside]**2)), 1e-3)
 
     def test_curves_that_the_program_kept(self):
         """curves.npy: row, column, height at the places that results.json tells."""
@@ -117,7 +217,8 @@ class StackTest(unittest.TestCase):
 
     def test_every_measure_and_window(self):
         """Of a single pixel as of all; at the border too."""
-        for measure in ("standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet"):
+        for measure in ("standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet",
+                        "gradient-and-curvature"):
             for shape in ("box", "gaussian"):
                 settings = {"focus_measure": measure, "window_px": 5, "window_shape": shape, "smoothing_steps": 0.0}
                 curves = vkfv.focus_curves(self.stack.images, settings)
@@ -138,6 +239,8 @@ class StackTest(unittest.TestCase):
             "modified-laplacian": (4 + 4 * 1) / 9,
             "tenengrad": numpy.sqrt((4 * 2 + 4 * 4) / 9),
             "brenner": numpy.sqrt(4 / 9),
+            # At the bright pixel two bends of 4; beside it a step of 2, bends of -2 and 2; at its corners steps of 1, bends of -1.
+            "gradient-and-curvature": (4 + 4 * numpy.sqrt(8) + 4 * numpy.sqrt(3)) / 9,
             "standard-deviation": numpy.sqrt(8 / 81),
         }
         for measure, amplitude in by_hand.items():

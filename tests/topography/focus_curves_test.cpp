@@ -68,7 +68,7 @@ TEST(FocusCurves, AreThoseOfTheDefinition) {
                 double value = 0;
                 for (const Share& share : axial_shares(weights, at, curve_images))
                     value += share.weight * focus_at({averaged[static_cast<std::size_t>(share.image)]},
-                                                     options.focus_measure, window, curves.columns[column],
+                                                     options.focus_measure.value(), window, curves.columns[column],
                                                      curves.rows[row]);
                 const std::size_t place = curves.index(column, row) * curves.z.size() + static_cast<std::size_t>(at);
                 EXPECT_NEAR(curves.values[place], value, 2e-6 * value); // of floats

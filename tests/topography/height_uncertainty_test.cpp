@@ -1,5 +1,5 @@
 // The uncertainty that heights tell of themselves: against windows of known errors, slopes, gaps and steps.
-#include "topography/height_uncertainty.hpp"
+#include "topography/uncertainty/height_uncertainty.hpp"
 
 #include "topography/compare.hpp"
 
@@ -57,14 +57,32 @@ double root_mean_square(const Grid<double>& grid, int border = 0) {
     return std::sqrt(sum / count);
 }
 
-TEST(HeightUncertainty, ABoxLeavesHalfOfTheVariance) {
-    // Continuous boxes k and m of widths 1 and b = 1.5, along either axis: |k|^2 = 1, and k*m is a trapezoid, level at
-    // 1/b over b - 1, with ramps of width 1 at either side. The sums over 401 points are off by a step's share, 1/401.
-    const double b = 1.5, level = b - 1;
-    const double both = (level + (1 - level) * (1 - (1 - level) / 4)) / b; // k . k*m
-    const double twice = (level + 2.0 / 3) / (b * b);                      // |k*m|^2
-    EXPECT_NEAR(scatter_share(FocusWindow(401, WindowShape::box), reference_window(401, WindowShape::box)),
-                1 - 2 * both * both + twice * twice, 0.002);
+TEST(HeightUncertainty, TheShareIsThatOfTheDefinition) {
+    // The surface of second degree over a square, at its middle, by Legendre's polynomials of u and v from -1 to 1:
+    // m = (1 - 5/2 (P2(u) + P2(v))) / 4, of which the sums over 61 points are off by a step's share.
+    const auto window = FocusWindow(61, WindowShape::box), reference = reference_window(61, WindowShape::box);
+    const int inner = window.radius(), outer = reference.radius(), reach = inner + outer;
+    const auto legendre = [&](int d) {
+        const double u = d / (outer + 0.5);
+        return 1.5 * u * u - 0.5;
+    };
+    Grid<double> distance(2 * reach + 1, 2 * reach + 1);
+    const double k = 1 / std::pow(2 * inner + 1, 2), m = 1 / std::pow(2 * outer + 1, 2);
+    for (int y = -inner; y <= inner; ++y) {
+        for (int x = -inner; x <= inner; ++x) {
+            distance(x + reach, y + reach) += k;
+            for (int dy = -outer; dy <= outer; ++dy) {
+                for (int dx = -outer; dx <= outer; ++dx) {
+                    distance(x + dx + reach, y + dy + reach) -= k * m * (1 - 2.5 * (legendre(dx) + legendre(dy)));
+                }
+            }
+        }
+    }
+    double squares = 0;
+    for (const double value : distance.values) {
+        squares += value * value;
+    }
+    EXPECT_NEAR(scatter_share(window, reference), squares / k, 0.01);
     EXPECT_EQ(reference_window(7, WindowShape::box).radius(), 5);
 }
 
@@ -88,7 +106,47 @@ TEST(HeightUncertainty, IsTheErrorOfWindowsWhosePixelsErrAlone) {
     }
 }
 
-TEST(HeightUncertainty, ASlopeIsNoUncertaintyNorAreGapsOnIt) {
+// Pixels' errors are means of 3 x 3 independent ones, of variance 1: neighbours share two thirds, those two apart one.
+TEST(HeightUncertainty, KnowsOfErrorsThatNeighboursHaveInCommon) {
+    constexpr int side = 160, width = 7;
+    const FocusWindow window(width, WindowShape::box), grain(3, WindowShape::box);
+    const Grid<double> pixels = windowed_errors(side + width - 1, grain, 5);
+    Grid<double> height(side, side), grains(5, 5);
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            for (int y = 0; y < width; ++y) {
+                for (int x = 0; x < width; ++x) {
+                    height(column, row) += 3 * pixels(column + x, row + y) / (width * width);
+                }
+            }
+        }
+    }
+    for (int y = -2; y <= 2; ++y) {
+        for (int x = -2; x <= 2; ++x) {
+            grains(x + 2, y + 2) = (1 - std::abs(x) / 3.0) * (1 - std::abs(y) / 3.0);
+        }
+    }
+    // Along an axis: sum over d of (7 - |d|) (3 - |d|) / 3 / 49, which both axes have.
+    const double along = (7 + 2 * (6 * 2.0 + 5) / 3) / 49, error = along;
+    const auto found = height_uncertainty(height, of(side, 0), width, WindowShape::box, grains);
+    EXPECT_NEAR(root_mean_square(found, width) / error, 1, 0.05);
+    // The wrong twin: errors that each pixel has alone.
+    const auto twin = height_uncertainty(height, of(side, 0), width, WindowShape::box);
+    EXPECT_LT(root_mean_square(twin, width) / error, 0.75);
+
+    // Noise of independent pixels beside it, as large: its part is taken off first.
+    const Grid<double> noise = windowed_errors(side, window, 6);
+    Grid<double> both = height;
+    for (std::size_t k = 0; k < both.values.size(); ++k) {
+        both.values[k] += noise.values[k] * width * error;
+    }
+    const auto apart = height_uncertainty(both, of(side, error), width, WindowShape::box, grains);
+    EXPECT_NEAR(root_mean_square(apart, width) / error, std::sqrt(2), 0.07);
+    const auto mixed = height_uncertainty(both, of(side, 0), width, WindowShape::box, grains);
+    EXPECT_GT(root_mean_square(mixed, width) / error, 1.55);
+}
+
+TEST(HeightUncertainty, ASurfaceOfSecondDegreeIsNoUncertaintyNorAreGapsOnIt) {
     constexpr int side = 60;
     const FocusWindow window(7, WindowShape::box);
     const Grid<double> errors = windowed_errors(side, window, 2);
@@ -98,7 +156,9 @@ TEST(HeightUncertainty, ASlopeIsNoUncertaintyNorAreGapsOnIt) {
     for (int row = 0; row < side; ++row) {
         for (int column = 0; column < side; ++column) {
             const bool gap = random() % 4 == 0;
-            ramp(column, row) = gap ? nothing : 1e4 + errors(column, row) + 5 * column - 3 * row;
+            ramp(column, row) =
+                gap ? nothing
+                    : 1e4 + errors(column, row) + 5 * column - 3 * row + 0.3 * column * column - 0.2 * column * row;
         }
     }
     const auto found = height_uncertainty(ramp, of(side, 0), 7, WindowShape::box);

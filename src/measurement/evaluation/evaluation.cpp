@@ -220,6 +220,9 @@ StackEvaluation::StackEvaluation(const topography::TopographyOptions& options, t
 
 void StackEvaluation::add(topography::Channels image, double z, std::optional<double> reading) {
     const Stopwatch stopwatch(evaluation_.seconds);
+    if (frames_ && columns_ == 0) {
+        spdlog::info("focus is measured by {}", name_of(evaluation_.options.focus_measure.value()));
+    }
     if (!image.empty()) {
         columns_ = image.front().columns;
         rows_ = image.front().rows;

@@ -182,9 +182,11 @@ std::vector<std::string> sentences_of(const topography::StackFaults& faults, top
     return sentences;
 }
 
-// Images of an instrument that vkfv does not know are read twice: first for the width of their focus curves.
-double smoothing_of(const LaidImages& images, const std::vector<int>& order,
-                    const topography::TopographyOptions& options) {
+// Images of an instrument that vkfv does not know are read twice: first for what their focus curves and noise suggest.
+void settle(topography::TopographyOptions& options, const LaidImages& images, const std::vector<int>& order) {
+    if (options.settled()) {
+        return;
+    }
     std::optional<topography::FocusProbes> probes;
     int columns = 0, rows = 0;
     for (const int image : order) {
@@ -192,15 +194,16 @@ double smoothing_of(const LaidImages& images, const std::vector<int>& order,
         if (!probes) {
             columns = channels.front().columns;
             rows = channels.front().rows;
-            probes.emplace(columns, rows, options.focus_measure,
+            probes.emplace(columns, rows, options.focus_measure.value_or(topography::where_noise_is_low),
                            topography::FocusWindow(options.window_px, options.window_shape));
         }
         if (channels.front().columns != columns || channels.front().rows != rows) {
-            return 0; // refused when it is evaluated
+            options.focus_measure = options.focus_measure.value_or(topography::where_noise_counts);
+            return; // refused when it is evaluated
         }
         probes->add(channels);
     }
-    return probes->suitable_smoothing();
+    probes->settle(options);
 }
 
 } // namespace
@@ -261,9 +264,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     const FrameCorrection correction(stack.corrections);
     const LaidImages images(series, correction, configuration.registration);
     auto options = configuration.topography;
-    if (!options.smoothing_steps) {
-        options.smoothing_steps = smoothing_of(images, order, options);
-    }
+    settle(options, images, order);
     StackEvaluation evaluation(
         options, focus_planes_for_files(configuration.evaluate_on, configuration.trace.device, order.size()),
         std::nullopt, series.size());

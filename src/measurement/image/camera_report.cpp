@@ -124,8 +124,8 @@ std::vector<std::string> warnings_of(const CameraMeasurement& measurement) {
     if (const auto& noise = measurement.figures.read_noise; noise.bounded) {
         warnings.push_back(
             fmt::format("Quantisation dominates the noise in the dark, whose variance is below 0.24 DN^2: the temporal "
-                        "dark noise is not "
-                        "measured, but below {:.3g} e- (EMVA 1288). A larger camera.gain_dn_per_e would show it",
+                        "dark noise is not measured, but below {:.3g} e- (EMVA 1288), and DSNU is that of rounded "
+                        "values, which may be far from the pixels'. A larger camera.gain_dn_per_e would show both",
                         noise.value));
     }
     return warnings;

@@ -180,6 +180,11 @@ topography::TopographyOptions evaluation_options(const Configuration& configurat
         options.smoothing_steps = topography::suitable_smoothing(half_width / deviations_a_half_width / step,
                                                                  static_cast<int>(positions.size()));
     }
+    if (!options.focus_measure) {
+        options.focus_measure = !configuration.camera          ? topography::where_texture_is_traced
+                                : *options.smoothing_steps > 0 ? topography::where_noise_counts
+                                                               : topography::where_little_is_averaged;
+    }
     return options;
 }
 

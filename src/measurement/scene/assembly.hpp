@@ -55,9 +55,10 @@ std::optional<optics::Diffraction> make_diffraction(const Configuration& configu
 std::optional<optics::Diffraction> diffraction_of_evaluation(const Configuration& configuration,
                                                              const optics::Instrument& instrument);
 
-// How the configuration asks for its own stack to be evaluated, with the average along z that suits its instrument
-// where none is given: a defocus that blurs waves of four pixels to half their contrast, with [diffraction] model =
-// "waves" waves of twice the resolution limit where these are longer.
+// How the configuration asks for its own stack to be evaluated. Where no focus measure is given, it is chosen by
+// whether there is a camera, whose noise counts; where no average along z is given, it suits the instrument: a defocus
+// that blurs waves of four pixels to half their contrast, with [diffraction] model = "waves" waves of twice the
+// resolution limit where these are longer.
 topography::TopographyOptions evaluation_options(const Configuration& configuration,
                                                  const optics::Instrument& instrument);
 

@@ -1,5 +1,7 @@
 #include "topography/noise/focus_masks.hpp"
 
+#include <cmath>
+
 namespace vkfv::topography {
 
 std::vector<Mask> masks_of(FocusMeasure measure) {
@@ -24,6 +26,18 @@ std::vector<Mask> masks_of(FocusMeasure measure) {
         }
         auto masks = both_ways(low, high);
         masks.push_back({high, high});
+        return masks;
+    }
+    case FocusMeasure::gradient_and_curvature: {
+        const std::array<double, 5> sobel = {0, 1, 2, 1, 0};
+        std::array<double, 5> bend = {0, -1, 2, -1, 0};
+        for (double& tap : bend) {
+            tap *= std::sqrt(0.5);
+        }
+        auto masks = both_ways(across, sobel);
+        for (const Mask& mask : both_ways(bend, sobel)) {
+            masks.push_back(mask);
+        }
         return masks;
     }
     }

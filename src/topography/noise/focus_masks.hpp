@@ -16,8 +16,9 @@ struct Mask {
     std::array<double, 5> y;
 };
 
-// The measure responds with the energy sum over these of (mask * image)^2; the modified Laplacian with the sum of the
-// magnitudes, the standard deviation (one mask, of the pixel alone) after the window's mean is taken off.
+// The measure responds with the energy sum over these of (mask * image)^2; gradient and curvature with the root of
+// that, the modified Laplacian with the sum of the magnitudes, the standard deviation (one mask, of the pixel alone)
+// after the window's mean is taken off.
 std::vector<Mask> masks_of(FocusMeasure measure);
 
 } // namespace vkfv::topography

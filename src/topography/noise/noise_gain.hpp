@@ -46,8 +46,9 @@ class NoiseCorrelation {
 // of two masks' responses to the noise at places k apart, the gain is sqrt(V / n) with
 //   V = sum over a, b, k of R_ab(k)^2 / sum over a of R_aa(0),
 // by frequencies sqrt(<e^2 S^2> / <e S> / n) with the masks' energy e and the noise's spectrum S. For independent
-// pixels V is 1 (standard deviation), 130/3 (Tenengrad), 5 (Brenner), 269165/36096 (wavelet). Without texture the noise
-// is 1 / sqrt(2) of that.
+// pixels V is 1 (standard deviation), 130/3 (Tenengrad), 5 (Brenner), 269165/36096 (wavelet),
+// 419/5 (gradient and curvature: its magnitudes have a thirteenth of V less, and 0.44 V without texture). Without
+// texture the noise is 1 / sqrt(2) of that.
 //
 // The modified Laplacian adds magnitudes, and texture keeps the signs of its two masks' responses:
 //   V = sum over a, b, k of (2/pi) asin(R_ab(k) / sqrt(R_aa(0) R_bb(0))) R_ab(k),

@@ -16,6 +16,7 @@ class WindowResponses {
   public:
     WindowResponses(FocusMeasure measure, const FocusWindow& window, int channels)
         : laplacian_(measure == FocusMeasure::modified_laplacian),
+          magnitudes_(focus::f64::focus_adds_magnitudes(static_cast<int>(measure))),
           deviation_(measure == FocusMeasure::standard_deviation), masks_(masks_of(measure)), channels_(channels),
           side_(2 * window.radius() + 1) {
         double total = 0;
@@ -33,7 +34,7 @@ class WindowResponses {
 
     int patch_side() const { return side_ + 2 * mask_reach; }
     // Whether the measure adds magnitudes, not energies.
-    bool magnitudes() const { return laplacian_; }
+    bool magnitudes() const { return magnitudes_; }
 
     // patch: all channels, patch_side() squared pixels each.
     std::vector<double> of(const std::vector<double>& patch) const {
@@ -49,9 +50,9 @@ class WindowResponses {
         return result;
     }
 
-    // The weights that noise has in the measure: the responses, or the modified Laplacian's signs.
+    // The weights that noise has in the measure: the responses, or their directions where magnitudes are added.
     std::vector<double> slopes(const std::vector<double>& responses) const {
-        if (!laplacian_) {
+        if (!magnitudes_) {
             return responses;
         }
         std::vector<double> result(responses.size());
@@ -61,7 +62,8 @@ class WindowResponses {
                 const double share = of_channel(responses, channel, pixel) / whole;
                 for (std::size_t mask = 0; mask < masks_.size(); ++mask) {
                     const std::size_t at = (channel * masks_.size() + mask) * weights_.size() + pixel;
-                    result[at] = share * (responses[at] > 0 ? 1.0 : responses[at] < 0 ? -1.0 : 0.0);
+                    const double sign = responses[at] > 0 ? 1.0 : responses[at] < 0 ? -1.0 : 0.0;
+                    result[at] = laplacian_ ? share * sign : responses[at] / whole;
                 }
             }
         }
@@ -76,12 +78,12 @@ class WindowResponses {
                 sum += weights_[pixel] * a[field + pixel] * b[field + pixel];
             }
         }
-        return sum / (laplacian_ ? std::sqrt(channels_) : channels_);
+        return sum / (magnitudes_ ? std::sqrt(channels_) : channels_);
     }
 
     // Square of the measure.
     double energy(const std::vector<double>& responses) const {
-        if (!laplacian_) {
+        if (!magnitudes_) {
             return product(responses, responses);
         }
         double sum = 0;
@@ -125,9 +127,10 @@ class WindowResponses {
     double of_channel(const std::vector<double>& responses, std::size_t channel, std::size_t pixel) const {
         double sum = 0;
         for (std::size_t mask = 0; mask < masks_.size(); ++mask) {
-            sum += std::abs(responses[(channel * masks_.size() + mask) * weights_.size() + pixel]);
+            const double response = responses[(channel * masks_.size() + mask) * weights_.size() + pixel];
+            sum += laplacian_ ? std::abs(response) : response * response;
         }
-        return sum;
+        return laplacian_ ? sum : std::sqrt(sum);
     }
     double magnitude(const std::vector<double>& responses, std::size_t pixel) const {
         double squares = 0;
@@ -137,7 +140,7 @@ class WindowResponses {
         return std::sqrt(squares);
     }
 
-    bool laplacian_, deviation_;
+    bool laplacian_, magnitudes_, deviation_;
     std::vector<Mask> masks_;
     int channels_;
     int side_;

@@ -15,8 +15,16 @@
 namespace vkfv::topography {
 namespace {
 
-constexpr std::array all_measures = {FocusMeasure::standard_deviation, FocusMeasure::tenengrad,
-                                     FocusMeasure::modified_laplacian, FocusMeasure::brenner, FocusMeasure::wavelet};
+constexpr std::array all_measures = {FocusMeasure::standard_deviation,
+                                     FocusMeasure::tenengrad,
+                                     FocusMeasure::modified_laplacian,
+                                     FocusMeasure::brenner,
+                                     FocusMeasure::wavelet,
+                                     FocusMeasure::gradient_and_curvature};
+
+bool adds_magnitudes(FocusMeasure measure) {
+    return measure == FocusMeasure::modified_laplacian || measure == FocusMeasure::gradient_and_curvature;
+}
 
 Grid<float> noise_image(int columns, int rows, double mean, double deviation, unsigned seed) {
     std::mt19937 random(seed);
@@ -70,6 +78,8 @@ double energy(const Grid<float>& image, FocusMeasure measure, int i, int j) {
         return std::pow(std::abs(masked({{0, 0, 0}, {-1, 2, -1}, {0, 0, 0}})) +
                             std::abs(masked({{0, -1, 0}, {0, 2, 0}, {0, -1, 0}})),
                         2);
+    case FocusMeasure::gradient_and_curvature:
+        return squares({{-1, 0, 1}, {-2, 0, 2}, {-1, 0, 1}}) + 0.5 * squares({{-1, 2, -1}, {-2, 4, -2}, {-1, 2, -1}});
     case FocusMeasure::standard_deviation:
         return 0;
     }
@@ -99,10 +109,10 @@ double direct_measure(const Channels& image, FocusMeasure measure, int window,
         for (std::size_t c = 0; c < image.size(); ++c)
             sum += measure == FocusMeasure::standard_deviation ? std::pow(image[c](i, j) - means[c], 2)
                                                                : energy(image[c], measure, i, j);
-        gathered += weight * (measure == FocusMeasure::modified_laplacian ? std::sqrt(sum) : sum);
+        gathered += weight * (adds_magnitudes(measure) ? std::sqrt(sum) : sum);
     });
     gathered /= total;
-    return (measure == FocusMeasure::modified_laplacian ? gathered : std::sqrt(gathered)) /
+    return (adds_magnitudes(measure) ? gathered : std::sqrt(gathered)) /
            (brightness * std::sqrt(static_cast<double>(image.size())));
 }
 
@@ -199,16 +209,18 @@ TEST(FocusMeasure, NoiseGainIsThatOfNoise) {
     // 400 places with 11 degrees of freedom each: a standard deviation known to 1 / sqrt(2 * 4400) = 1.07 %; five of
     // these (rate 6e-7) are 5.4 %. Narrow windows average less of what correlates between pixels by up to the masks'
     // width over the window's, a quarter for the wavelet's 5 of 19 pixels at both edges; and without texture the root
-    // of the energies has 1 / sqrt(2) of the noise, the modified Laplacian sqrt(12.02 / 27.9).
+    // of the energies has 1 / sqrt(2) of the noise, the modified Laplacian sqrt(12.02 / 27.9), gradient and curvature
+    // sqrt(0.44).
     const FocusWindow box(19, WindowShape::box), gaussian(21, WindowShape::gaussian);
     for (const auto measure : all_measures)
         for (const FocusWindow& window : {box, gaussian}) {
             const double with_texture = gain_over_model(measure, window, 0.1, 10);
-            const bool laplacian = measure == FocusMeasure::modified_laplacian;
             EXPECT_LT(with_texture, 1.054) << static_cast<int>(measure);
             EXPECT_GT(with_texture, 0.80) << static_cast<int>(measure);
             const double without = gain_over_model(measure, window, 0, 11);
-            const double expected = std::sqrt(laplacian ? 12.02 / 27.9 : 0.5);
+            const double expected = std::sqrt(measure == FocusMeasure::modified_laplacian       ? 12.02 / 27.9
+                                              : measure == FocusMeasure::gradient_and_curvature ? 0.44
+                                                                                                : 0.5);
             EXPECT_LT(without, 1.054 * expected) << static_cast<int>(measure);
             EXPECT_GT(without, 0.80 * expected) << static_cast<int>(measure);
         }

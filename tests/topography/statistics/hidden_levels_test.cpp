@@ -2,9 +2,9 @@
 #include "topography/hidden_levels.hpp"
 
 #include "topography/focus_probes.hpp"
-#include "topography/height_uncertainty.hpp"
 #include "topography/model_stack.hpp"
 #include "topography/topography.hpp"
+#include "topography/uncertainty/height_uncertainty.hpp"
 
 #include <gtest/gtest.h>
 

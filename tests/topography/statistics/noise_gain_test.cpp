@@ -39,6 +39,7 @@ TEST(NoiseGain, OfIndependentPixelsIsThatOfClosedForms) {
     EXPECT_NEAR(noise_gain(FocusMeasure::tenengrad, 49), std::sqrt(130.0 / 3) / 7, 1e-12);
     EXPECT_NEAR(noise_gain(FocusMeasure::brenner, 49), std::sqrt(5.0) / 7, 1e-12);
     EXPECT_NEAR(noise_gain(FocusMeasure::wavelet, 49), std::sqrt(269165.0 / 36096) / 7, 1e-12);
+    EXPECT_NEAR(noise_gain(FocusMeasure::gradient_and_curvature, 49), std::sqrt(419.0 / 5) / 7, 1e-12);
     EXPECT_NEAR(noise_gain(FocusMeasure::modified_laplacian, 1), std::sqrt(27.9), 0.005); // three digits
 }
 
@@ -84,7 +85,8 @@ std::vector<double> gains_of_images(const std::vector<FocusMeasure>& measures, c
 
 TEST(NoiseGain, OfBlurredNoiseIsThatOfItsImages) {
     using enum FocusMeasure;
-    const std::vector<FocusMeasure> all = {standard_deviation, tenengrad, modified_laplacian, brenner, wavelet};
+    const std::vector<FocusMeasure> all = {standard_deviation,    tenengrad, modified_laplacian, brenner, wavelet,
+                                           gradient_and_curvature};
     for (const auto& [aperture, pitch] : blurs) {
         const auto blurred = test::blurred_by_pupil(image_side, aperture, pitch);
         const auto gains = gains_of_images(all, blurred, blurred);
@@ -111,12 +113,13 @@ TEST(NoiseGain, OfBlurredNoiseIsThatOfItsImages) {
 // Level, in focus at image 20 everywhere; a texture fades as a Gaussian of a standard deviation of 5 images.
 class LevelStack {
   public:
-    LevelStack(const Grid<double>& texture, const BlurredNoise& noise, unsigned seed)
-        : noise_(noise), random_(seed), texture_(texture) {}
+    LevelStack(const Grid<double>& texture, const BlurredNoise& noise, unsigned seed, double deviation = 1)
+        : noise_(noise), random_(seed), texture_(texture), deviation_(deviation) {}
 
     static constexpr int images = 41;
     Grid<float> image(int k) {
-        return sum_of(100, texture_, 10 * std::exp(-0.5 * std::pow((k - 20) / 5.0, 2)), noise_.image(random_), 1);
+        return sum_of(100, texture_, 10 * std::exp(-0.5 * std::pow((k - 20) / 5.0, 2)), noise_.image(random_),
+                      deviation_);
     }
     Topography evaluated(FocusMeasure measure, double smoothing_steps = 2) {
         std::vector<Grid<float>> stack;
@@ -134,6 +137,7 @@ class LevelStack {
     const BlurredNoise& noise_;
     std::mt19937_64 random_;
     const Grid<double>& texture_;
+    double deviation_;
 };
 
 TEST(NoiseCorrelation, IsFoundInTheStack) {
@@ -248,7 +252,8 @@ TEST(HeightNoise, OfACameraIsThatOfItsHeights) {
     using enum FocusMeasure;
     const BlurredNoise noise(side);
     for (const auto& [measure, pitch, smoothing_steps] :
-         {Case{wavelet, 1, 2}, Case{wavelet, 1, 0}, Case{tenengrad, 0.5, 2}}) {
+         {Case{wavelet, 1, 2}, Case{wavelet, 1, 0}, Case{tenengrad, 0.5, 2}, Case{gradient_and_curvature, 1, 2},
+          Case{gradient_and_curvature, 0.5, 2}, Case{gradient_and_curvature, 0.5, 0}}) {
         std::mt19937_64 random(3);
         const auto texture = test::blurred_by_pupil(side, aperture, pitch * nyquist).image(random);
         const auto found = scatter_of(texture, noise, measure, smoothing_steps, stacks);
@@ -266,6 +271,40 @@ TEST(HeightNoise, OfACameraIsThatOfItsHeights) {
         ASSERT_TRUE(beside);
         const double twin = noise_gain(measure, 49) / std::sqrt(beside->beside[0]);
         EXPECT_GT(found.told_over_found * twin, 1.15) << name;
+    }
+}
+
+TEST(FocusChoice, IsByTheNoiseOfTheStack) {
+    constexpr int side = 96;
+    constexpr double aperture = 0.41, nyquist = 0.55e-3 / (4 * aperture);
+    std::mt19937_64 random(3);
+    const auto texture = test::blurred_by_pupil(side, aperture, nyquist).image(random);
+    const BlurredNoise noise(side);
+    const FocusWindow window(7, WindowShape::box);
+    for (const double deviation : {0.0, 0.02, 0.7, 3.0}) { // of the texture's 10
+        LevelStack stack(texture, noise, 2, deviation);
+        FocusProbes probes(side, side, where_noise_is_low, window), by_chosen(side, side, where_noise_counts, window);
+        for (int k = 0; k < LevelStack::images; ++k) {
+            const auto image = stack.image(k);
+            probes.add({image});
+            by_chosen.add({image});
+        }
+        TopographyOptions options{.focus_measure = std::nullopt};
+        EXPECT_FALSE(options.settled());
+        const double fine = probes.suitable_smoothing();
+        probes.settle(options);
+        ASSERT_TRUE(options.settled());
+        const bool counts = deviation > 0.1;
+        EXPECT_EQ(*options.focus_measure, counts ? where_noise_counts : where_noise_is_low) << deviation;
+        // What else is chosen is by the measure chosen.
+        EXPECT_EQ(*options.smoothing_steps, counts ? by_chosen.suitable_smoothing() : fine) << deviation;
+        TopographyOptions single{.focus_measure = std::nullopt, .smoothing_steps = 0};
+        probes.settle(single);
+        EXPECT_EQ(*single.focus_measure, where_little_is_averaged);
+        TopographyOptions given{.focus_measure = FocusMeasure::brenner, .smoothing_steps = 3};
+        probes.settle(given);
+        EXPECT_EQ(*given.focus_measure, FocusMeasure::brenner);
+        EXPECT_EQ(*given.smoothing_steps, 3);
     }
 }
 

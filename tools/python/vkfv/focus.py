@@ -48,6 +48,7 @@ SECOND_DIFFERENCE = (-1.0, 2.0, -1.0)
 SOBEL = (1.0, 2.0, 1.0)
 LOW = (-0.125, 0.25, 0.75, 0.25, -0.125)
 HIGH = (-0.5, 1.0, -0.5)
+MAGNITUDES = ("modified-laplacian", "gradient-and-curvature")  # all others are roots of energies
 
 
 def _response(images: numpy.ndarray, measure: str) -> numpy.ndarray:
@@ -64,6 +65,9 @@ def _response(images: numpy.ndarray, measure: str) -> numpy.ndarray:
         return squares((ONE, DIFFERENCE), (DIFFERENCE, ONE))
     if measure == "wavelet":
         return squares((HIGH, LOW), (LOW, HIGH), (HIGH, HIGH))
+    if measure == "gradient-and-curvature":
+        bends = squares((SOBEL, SECOND_DIFFERENCE), (SECOND_DIFFERENCE, SOBEL))
+        return numpy.sqrt(squares((SOBEL, DIFFERENCE), (DIFFERENCE, SOBEL)) + 0.5 * bends)
     raise ValueError(f"no focus measure {measure}")
 
 
@@ -117,7 +121,7 @@ def focus_curves(
             amplitude = numpy.sqrt(numpy.maximum(energy, 0))
         else:
             energy = _windowed(_response(image, measure), weights, (inner_y, inner_x))
-            amplitude = energy if measure == "modified-laplacian" else numpy.sqrt(energy)
+            amplitude = energy if measure in MAGNITUDES else numpy.sqrt(energy)
         curves[k] = numpy.divide(amplitude, level, out=numpy.zeros_like(amplitude), where=level > 0)
     coords = {"z": images.z, "y": images.y[rows], "x": images.x[columns]}
     return Array(numpy.tensordot(share, curves, axes=1), ("z", "y", "x"), coords, "", "focus measure")
