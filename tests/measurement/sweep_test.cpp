@@ -2,6 +2,7 @@
 #include "core/files/file.hpp"
 #include "core/mathematics/units.hpp"
 #include "measurement/sweep/sweep.hpp"
+#include "scan/store.hpp"
 #include "surface_files/surface_file.hpp"
 
 #include <gtest/gtest.h>
@@ -28,20 +29,23 @@ class SweepOfStacks : public testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    // Two small stacks; `traced` counts the images that were traced for them.
+    // Small stacks, of 11 images, each combination in two repeats.
+    std::vector<TomlOverride> overrides(const std::string& surfaces, const fs::path& out) const {
+        return {{"trace.rays", "1e5", ""},
+                {"detector.pixels", "16", ""},
+                {"specimen.size_mm", "0.14", ""},
+                {"scan.z_step_um", "2.7", ""},
+                {"topography.smoothing_steps", "0.7", ""},
+                {"sweep.repeats", "2", ""},
+                {"output.directory", toml_quoted((folder_ / out).string()), ""},
+                {"output.surfaces", surfaces, ""}};
+    }
+    // `traced` counts the images that were traced.
     SweepResult run(const std::string& surfaces, int& traced) const {
         Progress progress(std::cerr, Progress::Style::quiet);
         traced = 0;
-        return run_sweep(folder_ / "c.toml",
-                         {{"trace.rays", "1e5", ""},
-                          {"detector.pixels", "16", ""},
-                          {"specimen.size_mm", "0.14", ""},
-                          {"scan.z_step_um", "2.7", ""},
-                          {"topography.smoothing_steps", "0.7", ""},
-                          {"sweep.repeats", "2", ""},
-                          {"output.directory", toml_quoted((folder_ / "out").string()), ""},
-                          {"output.surfaces", surfaces, ""}},
-                         progress, [&](const StackResult& stack) { traced += stack.traced.traced; });
+        return run_sweep(folder_ / "c.toml", overrides(surfaces, "out"), progress,
+                         [&](const StackResult& stack) { traced += stack.traced.traced; });
     }
 
     fs::path folder_ = fs::temp_directory_path() / ("vkfv-sweep-of-stacks-" + std::to_string(getpid()));
@@ -89,6 +93,65 @@ TEST_F(SweepOfStacks, IsTheSameOfImagesThatWereThereAndOfFilesThatCannotBeReadBa
     EXPECT_EQ(again.rows.front().figures, first.rows.front().figures);
     EXPECT_EQ(again.rows.front().picture.values, first.rows.front().picture.values);
     EXPECT_EQ(read_file(first.folder / "sweep.csv"), table);
+}
+
+// Two cameras, each of whose stacks is evaluated by two windows: the light of one stack is traced, for each of two
+// seeds. Every folder has the bytes that the stack's own command gives it.
+TEST_F(SweepOfStacks, TheSameLightIsTracedOnce) {
+    auto text = read_file(folder_ / "c.toml");
+    text = text.substr(0, text.find("[[sweep.parameter]]")) +
+           "[[sweep.parameter]]\nkey = \"camera.saturation\"\nvalues = [0.4, 0.6]\n"
+           "[[sweep.parameter]]\nkey = \"topography.window_px\"\nvalues = [5, 7]\n";
+    write_file(folder_ / "c.toml", text);
+    const std::vector<TomlOverride> camera = {{"camera.preset", "\"IMX250\"", ""},
+                                              {"camera.exposure", "\"stack\"", ""}};
+    const auto with = [&](const fs::path& out, std::vector<TomlOverride> more) {
+        auto all = overrides("[\"tiff\"]", out);
+        all.insert(all.end(), camera.begin(), camera.end());
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    Progress progress(std::cerr, Progress::Style::quiet);
+    std::vector<int> traced;
+    const auto sweep = [&] {
+        traced.clear();
+        return run_sweep(folder_ / "c.toml", with("out", {}), progress,
+                         [&](const StackResult& stack) { traced.push_back(stack.traced.traced); });
+    };
+    const auto result = sweep();
+    EXPECT_EQ(traced, (std::vector<int>{11, 11, 0, 0, 0, 0, 0, 0}));
+
+    int different_images = 0;
+    for (const std::string saturation : {"0.4", "0.6"}) {
+        for (const std::string window : {"5", "7"}) {
+            const auto alone = with("alone_" + saturation + "_" + window,
+                                    {{"camera.saturation", saturation, ""}, {"topography.window_px", window, ""}});
+            const auto stack = measure_stack(load_configuration(folder_ / "c.toml", alone), progress);
+            const fs::path swept = result.folder / ("saturation=" + saturation + ",window_px=" + window) / "repeat_000";
+            std::vector<fs::path> files = {"topography.tif", "height_uncertainty.tif", "ledger.csv"};
+            for (int image = 0; image < 11; ++image) {
+                files.push_back(scan::image_path(image));
+            }
+            for (const fs::path& file : files) {
+                EXPECT_EQ(read_file(swept / file), read_file(stack.folder / file)) << swept / file;
+            }
+            const fs::path middle = scan::image_path(5);
+            different_images += read_file(folder_ / "alone_0.4_5" / middle) != read_file(stack.folder / middle) ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(different_images, 2); // of the other camera
+
+    // An image that is lost in both folders of the second camera is traced again in one, and taken from there.
+    const fs::path lost = scan::image_path(3);
+    const auto folder_of = [&](const std::string& window) {
+        return result.folder / ("saturation=0.6,window_px=" + window) / "repeat_000";
+    };
+    const auto bytes = read_file(folder_of("5") / lost);
+    fs::remove(folder_of("5") / lost);
+    fs::remove(folder_of("7") / lost);
+    sweep();
+    EXPECT_EQ(traced, (std::vector<int>{0, 0, 0, 0, 1, 0, 0, 0}));
+    EXPECT_EQ(read_file(folder_of("7") / lost), bytes);
 }
 
 } // namespace

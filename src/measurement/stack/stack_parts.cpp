@@ -48,13 +48,25 @@ void warn_of_noise(const Configuration& configuration, const Evaluation& evaluat
 
 } // namespace
 
-StackScene::StackScene(const Configuration& its_configuration)
-    : configuration(its_configuration), positions(configuration.scan->positions()) {
+namespace {
+
+std::shared_ptr<const StackScene::Parts> parts_of(const Configuration& configuration) {
+    auto parts = std::make_shared<StackScene::Parts>();
     enter_stage("specimen");
-    specimen = make_specimen(configuration);
+    parts->specimen = make_specimen(configuration);
     enter_stage("instrument");
-    instrument = assemble_instrument(configuration, specimen, positions);
+    parts->instrument = assemble_instrument(configuration, parts->specimen, configuration.scan->positions());
+    return parts;
 }
+
+} // namespace
+
+StackScene::StackScene(const Configuration& its_configuration)
+    : StackScene(its_configuration, parts_of(its_configuration)) {}
+
+StackScene::StackScene(const Configuration& its_configuration, std::shared_ptr<const Parts> parts)
+    : parts_(std::move(parts)), configuration(its_configuration), positions(configuration.scan->positions()),
+      specimen(parts_->specimen), instrument(parts_->instrument) {}
 
 scan::StackDescription StackScene::description(const trace::TracerIdentity& tracer) const {
     std::string identity = image_identity(configuration, specimen::geometry_digest(specimen), tracer);
@@ -68,6 +80,18 @@ scan::StackDescription StackScene::description(const trace::TracerIdentity& trac
             .pitch = instrument.first_order.pixel_pitch,
             .type = configuration.pixel_type,
             .quantity = configuration.camera ? "grey values in DN" : scan::StackDescription().quantity};
+}
+
+scan::ImageDeveloper developer_of(const StackScene& scene, const scan::ImageStore& store,
+                                  const WorkingDevices& devices) {
+    const Configuration& configuration = scene.configuration;
+    if (!configuration.camera) {
+        return scan::light_itself;
+    }
+    enter_stage("exposure time");
+    const double seconds = exposure_time(store, configuration, scene.instrument, scene.specimen, devices);
+    const auto camera = std::make_shared<const ImagingCamera>(configuration, scene.instrument, seconds);
+    return [camera](int image, const trace::Image& exposure) { return camera->develop(image, exposure); };
 }
 
 GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,

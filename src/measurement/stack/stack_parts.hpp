@@ -7,30 +7,50 @@
 #include "measurement/scene/known_truth.hpp"
 #include "measurement/scene/phase_limits.hpp"
 #include "measurement/scene/wave_limits.hpp"
+#include "measurement/scene/working_devices.hpp"
 #include "optics/instrument/instrument.hpp"
+#include "scan/stack.hpp"
 #include "scan/store.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/interface/tracer_identity.hpp"
 
 #include <future>
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace vkfv::measurement {
 
 // Instrument and specimen of a configuration's stack.
-struct StackScene {
+class StackScene {
+  public:
+    struct Parts {
+        specimen::Specimen specimen;
+        optics::Instrument instrument;
+    };
+
     // Throws InputError. The configuration must outlive it.
     explicit StackScene(const Configuration& configuration);
+    // The same of parts that were made for another configuration with the same ones.
+    StackScene(const Configuration& configuration, std::shared_ptr<const Parts> parts);
 
     ImageSize pixels() const { return configuration.instrument.detector_pixels; }
     scan::StackDescription description(const trace::TracerIdentity& tracer) const;
+    const std::shared_ptr<const Parts>& parts() const { return parts_; }
 
+  private:
+    std::shared_ptr<const Parts> parts_;
+
+  public:
     const Configuration& configuration;
     std::vector<double> positions; // focal heights, mm
-    specimen::Specimen specimen;
-    optics::Instrument instrument;
+    const specimen::Specimen& specimen;
+    const optics::Instrument& instrument;
 };
+
+// What images are made of their light by: the camera, if there is one. The configuration must outlive it.
+scan::ImageDeveloper developer_of(const StackScene& scene, const scan::ImageStore& store,
+                                  const WorkingDevices& devices);
 
 // A stack that is evaluated while its images come. What no image is needed for is made beside them.
 class GrowingEvaluation {

@@ -70,15 +70,26 @@ SweepResult run_sweep(const std::filesystem::path& file, const std::vector<TomlO
         (void)load_configuration(file, with_values(overrides, sweep, values), needs);
     }
     ResultFolder results(base.output_directory);
+    std::vector<std::vector<Configuration>> stacks;
+    for (const auto& values : list) {
+        if (sweep.stacks) {
+            stacks.push_back(repeated(file, with_values(overrides, sweep, values), sweep.repeats,
+                                      results.path() / sweep_name(sweep, values)));
+        }
+    }
+    SweptStacks swept(std::move(stacks));
+    if (sweep.stacks) {
+        spdlog::info("{}", swept.plan());
+    }
     Surfaces surfaces;
+    StackRuns runs; // of images: its devices
     std::vector<SweepRow> rows;
     for (const auto& values : list) {
         const std::string name = sweep_name(sweep, values);
         spdlog::info("{} of {}: {}", rows.size() + 1, list.size(), name);
-        const auto of_row = with_values(overrides, sweep, values);
-        rows.push_back(sweep.stacks ? stack_row(repeated(file, of_row, sweep.repeats, results.path() / name), progress,
-                                                after_stack)
-                                    : image_row(load_configuration(file, of_row, needs), results, name, surfaces));
+        rows.push_back(sweep.stacks ? swept.measure_next(progress, after_stack)
+                                    : image_row(load_configuration(file, with_values(overrides, sweep, values), needs),
+                                                results, name, surfaces, runs));
         rows.back().values = values;
     }
     const std::string title = file.stem().string();

@@ -77,8 +77,8 @@ const Surfaces::Surface& Surfaces::of(const Configuration& configuration) {
     return surface_;
 }
 
-SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name,
-                   Surfaces& surfaces) {
+SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name, Surfaces& surfaces,
+                   StackRuns& runs) {
     const double focal_height = configuration.sweep->focal_height;
     const fs::path image_name = name / "image.tif", figures_name = name / "image.json";
     const auto& surface = surfaces.of(configuration);
@@ -95,8 +95,8 @@ SweepRow image_row(const Configuration& configuration, ResultFolder& results, co
         row.figures = earlier.at("figures");
         row.device = earlier.value("device", "");
     } else {
-        WorkingDevices devices(configuration.trace.device);
-        const Exposure exposure = expose(configuration, devices, instrument, surface.specimen, focal_height);
+        const Exposure exposure =
+            expose(configuration, runs.devices_of(configuration), instrument, surface.specimen, focal_height);
         const bool tells =
             configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
         row.figures = figures_of(exposure.image, tells);

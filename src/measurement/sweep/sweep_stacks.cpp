@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -80,14 +82,53 @@ Grid<float> picture_of(const Grid<double>& heights) {
 
 } // namespace
 
-SweepRow stack_row(const std::vector<Configuration>& repeats, Progress& progress,
-                   const std::function<void(const StackResult&)>& after_stack) {
+SweptStacks::SweptStacks(std::vector<std::vector<Configuration>> rows) : rows_(std::move(rows)) {
+    for (const auto& row : rows_) {
+        for (const Configuration& configuration : row) {
+            stacks_.push_back(&configuration);
+            keys_.push_back({.images = image_key(configuration), .light = light_key(configuration)});
+        }
+    }
+}
+
+std::string SweptStacks::plan() const {
+    std::set<std::string> images, lights;
+    for (const Keys& keys : keys_) {
+        images.insert(keys.images);
+        lights.insert(keys.light);
+    }
+    return fmt::format(
+        "Of {} stacks the light of {} is traced, {} further {} made of the same light, and {} of the same "
+        "images",
+        stacks_.size(), lights.size(), images.size() - lights.size(), images.size() - lights.size() == 1 ? "is" : "are",
+        stacks_.size() - images.size());
+}
+
+StackAmongOthers SweptStacks::others_of(std::size_t stack) const {
+    StackAmongOthers others;
+    std::set<std::string> made = {keys_[stack].images};
+    for (std::size_t k = 0; k < stacks_.size(); ++k) {
+        if (k < stack && keys_[k].images == keys_[stack].images) {
+            others.same_images.push_back(stacks_[k]->output_directory);
+        }
+        if (k > stack && keys_[k].light == keys_[stack].light) {
+            others.light_again = true;
+            if (made.insert(keys_[k].images).second) {
+                others.same_light.push_back(stacks_[k]);
+            }
+        }
+    }
+    return others;
+}
+
+SweepRow SweptStacks::measure_next(Progress& progress, const std::function<void(const StackResult&)>& after_stack) {
+    const std::vector<Configuration>& repeats = rows_[next_row_++];
     std::vector<Grid<double>> heights;
     std::vector<Json> figures;
     double rays_per_image = 0;
     SweepRow row;
     for (const auto& configuration : repeats) {
-        const auto stack = measure_stack(configuration, progress);
+        const auto stack = runs_.measure(configuration, progress, others_of(next_stack_++));
         after_stack(stack);
         heights.push_back(as_written(stack.evaluation.topography.height.height));
         figures.push_back(figures_of(stack.evaluation.deviation.value()));

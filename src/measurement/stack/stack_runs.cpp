@@ -1,0 +1,169 @@
+#include "measurement/stack/stack_runs.hpp"
+
+#include "core/messages/error.hpp"
+#include "core/messages/stages.hpp"
+#include "core/threads/parallel_list.hpp"
+#include "measurement/scene/disk_space.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <future>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+namespace vkfv::measurement {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// An identity without its tables of these names and what is below them.
+std::string without_tables(const std::string& identity, std::initializer_list<std::string_view> names) {
+    std::string text;
+    bool kept = true;
+    std::istringstream lines(identity);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with('[')) {
+            const auto first = line.find_first_not_of('[');
+            const std::string_view table = std::string_view(line).substr(first, line.find(']') - first);
+            kept = std::ranges::none_of(names, [&](std::string_view name) {
+                return table == name || (table.starts_with(name) && table.substr(name.size()).starts_with('.'));
+            });
+        }
+        text += kept ? line + "\n" : "";
+    }
+    return text;
+}
+
+// Requests are no part of an identity, and yet decide which device traces how.
+std::string requests_of(const Configuration& configuration) {
+    return fmt::format("device = {}\ntraversal = {}\n", configuration.trace.device,
+                       static_cast<int>(configuration.trace.traversal));
+}
+
+// Of images that a folder lacks, those that the others hold whole. What another device traced stays where it is.
+void take_images(scan::ImageStore& store, const std::vector<fs::path>& folders) {
+    for (const fs::path& folder : folders) {
+        for (int image = 0; image < static_cast<int>(store.description().positions.size()); ++image) {
+            try {
+                if (!store.stored(image)) {
+                    (void)store.take(image, folder);
+                }
+            } catch (const InputError& error) {
+                spdlog::debug("{}: {}", error.problem().where.file.string(), error.problem().found);
+            }
+        }
+    }
+}
+
+// Another stack of the light that is traced now.
+struct Follower {
+    StackScene scene;
+    scan::ImageStore store;
+    scan::ImageDeveloper develop;
+
+    Follower(const StackScene& traced, const Configuration& configuration, const trace::TracerIdentity& tracer,
+             const WorkingDevices& devices)
+        : scene(configuration, traced.parts()), store(configuration.output_directory, scene.description(tracer)),
+          develop(developer_of(scene, store, devices)) {
+        require_space(store, 0);
+    }
+
+    void take(int image, const trace::Image& exposure) {
+        if (!store.stored(image)) {
+            store.store(image, exposure, develop(image, exposure));
+        }
+    }
+};
+
+} // namespace
+
+std::string image_key(const Configuration& configuration) {
+    return configuration.identity + requests_of(configuration);
+}
+
+std::string light_key(const Configuration& configuration) {
+    return without_tables(configuration.identity, {"camera", "output"}) + requests_of(configuration);
+}
+
+WorkingDevices& StackRuns::devices_of(const Configuration& configuration) {
+    if (!devices_ || selector_ != configuration.trace.device) {
+        light_.reset(); // its tracer holds a device
+        devices_.emplace(configuration.trace.device);
+        selector_ = configuration.trace.device;
+    }
+    return *devices_;
+}
+
+StackResult StackRuns::trace_and_evaluate(const StackScene& scene, const WorkingDevices& devices,
+                                          const StackAmongOthers& others, Progress& progress) {
+    const Configuration& configuration = scene.configuration;
+    enter_stage("device, kernels");
+    // What fails leaves no tracer behind, since its device may be lost.
+    auto tracer = std::move(light_->tracer);
+    if (!tracer) {
+        tracer = make_tracer(devices, configuration, scene.instrument, scene.specimen);
+    }
+    const trace::TracerIdentity identity = tracer->identity();
+    enter_stage("folder of the stack");
+    scan::ImageStore store(configuration.output_directory, scene.description(identity));
+    require_space(store, results_bytes(configuration));
+    take_images(store, others.same_images);
+    const auto own = developer_of(scene, store, devices);
+    std::vector<std::unique_ptr<Follower>> followers;
+    if (!store.complete()) {
+        for (const Configuration* other : others.same_light) {
+            followers.push_back(std::make_unique<Follower>(scene, *other, identity, devices));
+        }
+    }
+    const auto develop = [&](int image, const trace::Image& exposure) {
+        parallel_items(static_cast<int>(followers.size()),
+                       [&](int k) { followers[static_cast<std::size_t>(k)]->take(image, exposure); });
+        return own(image, exposure);
+    };
+    // Evaluated as they are traced: no second pass over the disk.
+    GrowingEvaluation evaluation(scene, focus_planes_for(configuration.evaluate_on, tracer->device()),
+                                 tracer->pupil_filters());
+    enter_stage("images");
+    const auto traced = scan::run_stack(
+        *tracer, store, progress, [&](int image, Grid<float> values) { evaluation.add(image, std::move(values)); },
+        configuration.checkpoint_interval, develop);
+    followers.clear();
+    spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
+    if (traced.device_span > 0) {
+        store.append_timing("device at work", traced.device_seconds);
+        store.append_timing("device from first to last image", traced.device_span);
+    }
+    EvaluatedStack evaluated = evaluation.finish(store, identity);
+    std::future<void> closed;
+    if (others.light_again) {
+        light_->tracer = std::move(tracer);
+    } else {
+        // The tracer gives its memory back beside the results: a driver takes a tenth of a second for gigabytes.
+        closed = std::async(std::launch::async, [tracer = std::move(tracer)]() mutable { tracer.reset(); });
+    }
+    write_stack_results(store, configuration, evaluated);
+    return {.evaluation = std::move(evaluated.evaluation),
+            .traced = traced,
+            .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument),
+            .folder = store.folder(),
+            .device = identity.text()};
+}
+
+StackResult StackRuns::measure(const Configuration& configuration, Progress& progress, const StackAmongOthers& others) {
+    WorkingDevices& devices = devices_of(configuration);
+    const std::string key = light_key(configuration);
+    if (!light_ || light_->key != key) {
+        light_.reset(); // before the next takes memory
+        light_ = Light{.key = key, .parts = StackScene(configuration).parts(), .tracer = nullptr};
+    }
+    const StackScene scene(configuration, light_->parts);
+    StackResult result;
+    work_with_devices(
+        devices, [&](const WorkingDevices& working) { result = trace_and_evaluate(scene, working, others, progress); });
+    return result;
+}
+
+} // namespace vkfv::measurement

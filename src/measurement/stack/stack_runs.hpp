@@ -1,0 +1,60 @@
+// Stacks that one process measures, one after the other. What they have in common is made once.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "core/messages/progress.hpp"
+#include "measurement/scene/working_devices.hpp"
+#include "measurement/stack/stack.hpp"
+#include "measurement/stack/stack_parts.hpp"
+#include "trace/interface/tracer.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// Equal texts: the images have the same bits, if one device traces them.
+std::string image_key(const Configuration& configuration);
+// Equal texts: the same light falls on the detector, of which different cameras may make different images.
+std::string light_key(const Configuration& configuration);
+
+// A stack among others of the same process.
+struct StackAmongOthers {
+    // Folders of stacks with the same image_key(): what they hold of the images is taken from there.
+    std::vector<std::filesystem::path> same_images;
+    // Configurations with the same light_key(), each with an image_key() of its own: their images are made, in their
+    // folders, of the light that is traced now.
+    std::vector<const Configuration*> same_light;
+    bool light_again = false; // a stack with the same light_key() follows
+};
+
+class StackRuns {
+  public:
+    // As measure_stack(). Devices stay open for the next stack, and of a stack with the same light_key() scene and
+    // kernels are used again. The bits are those of measure_stack() by itself. Throws as it does; the same call
+    // continues.
+    StackResult measure(const Configuration& configuration, Progress& progress, const StackAmongOthers& others = {});
+
+    // The devices of the configuration: those that are open, if it asks for them.
+    WorkingDevices& devices_of(const Configuration& configuration);
+
+  private:
+    // What depends on the light alone.
+    struct Light {
+        std::string key;
+        std::shared_ptr<const StackScene::Parts> parts;
+        std::unique_ptr<trace::Tracer> tracer; // none: it is to be made
+    };
+
+    StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& devices,
+                                   const StackAmongOthers& others, Progress& progress);
+
+    std::string selector_;
+    std::optional<WorkingDevices> devices_;
+    std::optional<Light> light_;
+};
+
+} // namespace vkfv::measurement
