@@ -15,7 +15,6 @@ PATH = "/usr/sbin:/usr/bin:/sbin:/bin"
 OTHERS = {
     "apt": "tools/setup itself needs it, and debootstrap puts it into the smallest root",
     "apt-get": "likewise",
-    "npm": "docs/report.md: for a library that Debian does not have, by hand",
     "scontrol": "tools/slurm/stack.sbatch: Slurm itself starts this file",
     "vkfv": "the program that is built here",
 }
