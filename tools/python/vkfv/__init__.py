@@ -18,7 +18,7 @@ from .stack import PointState, Stack
 from .sweep import Sweep
 from .x3p import read_x3p
 
-__version__ = "1.0.0"
+__version__ = "1.1.0"
 
 __all__ = [
     "Array",
