@@ -25,8 +25,7 @@ const real NO_PLACE = real(-2.0);
     FIELD(int, measure)       /* FOCUS_* */ \
     FIELD(int, window_radius) /* pixels */ \
     FIELD(int, peak)          /* PEAK_* */ \
-    FIELD(int, peak_range)    /* steps on either side of the maximum, at least 1 */ \
-    FIELD(real, brightness)   /* what the measure is divided by; 0: the mean brightness of each window */
+    FIELD(int, peak_range)    /* steps on either side of the maximum, at least 1 */
 struct FocusPlan {
     VKFV_FOCUS_PLAN_FIELDS(VKFV_DECLARE)
 };

@@ -79,11 +79,8 @@ VKFV_SCENE_FUNCTION WindowSums window_along_column(VKFV_SCENE_PARAMETER FocusPla
     return sums;
 }
 
-// The measure at a pixel: the root of the mean energy, over brightness. The images of a stack are divided by the
-// brightness of the whole image, which cancels what the lamp and the exposure do from image to image. The brightness of
-// the window would not do: out of focus it takes light from brighter surroundings, so that it changes with z and would
-// move the maximum. C channels of the same grey give what one gives: their energy is C times as large, and so is
-// C brightness^2.
+// The measure at a pixel: the root of the mean energy, over brightness, so that a slowly varying illumination cancels.
+// C channels of the same grey give what one gives: their energy is C times as large, and so is C brightness^2.
 VKFV_SCENE_FUNCTION real focus_value(VKFV_SCENE_PARAMETER FocusPlan plan, int column, int row) {
     int fields = focus_fields(plan);
     real level = real(0.0);
@@ -94,6 +91,5 @@ VKFV_SCENE_FUNCTION real focus_value(VKFV_SCENE_PARAMETER FocusPlan plan, int co
         energy = energy + sums.energy;
     }
     real amplitude = focus_adds_magnitudes(plan.measure) ? energy : root(energy);
-    real brightness = plan.brightness > real(0.0) ? plan.brightness : level;
-    return brightness > real(0.0) ? quotient(amplitude, brightness * root(real(plan.channels))) : real(0.0);
+    return level > real(0.0) ? quotient(amplitude, level * root(real(plan.channels))) : real(0.0);
 }

@@ -11,7 +11,6 @@
 #include "spirv/focus_select.h"
 #include "spirv/focus_single.h"
 #include "topography/focus_records.hpp"
-#include "topography/image_brightness.hpp"
 #include "vulkan/kernel.hpp"
 
 #include <algorithm>
@@ -116,7 +115,6 @@ class DeviceFocusPlanes final : public FocusPlanes {
     }
 
     void take(int image, Channels channels) override {
-        brightness_of_.add(channels);
         submit();
         // The one that carried the image before the last has been read.
         vulkan::Buffer& carrier = carriers_[static_cast<std::size_t>(image) % carriers_.size()];
@@ -133,13 +131,13 @@ class DeviceFocusPlanes final : public FocusPlanes {
         if (images_averaged_) {
             measure_mean(shares, curve_at(image));
         } else {
-            measure(image_at(image), brightness_of_.of(image), curve_at(image));
+            measure(image_at(image), curve_at(image));
         }
     }
 
     void measure_alone(int image) override {
         if (images_averaged_) {
-            measure(image_at(image), brightness_of_.of(image), single_curve_);
+            measure(image_at(image), single_curve_);
         }
         dispatch(single_,
                  {{BINDING_CURVE, images_averaged_ ? &single_curve_ : &curve_at(image)},
@@ -260,26 +258,24 @@ class DeviceFocusPlanes final : public FocusPlanes {
         commands().barrier();
     }
 
-    void measure(const vulkan::Buffer& image, double brightness, const vulkan::Buffer& curve) {
-        FocusPlan plan = plan_;
-        plan.brightness = static_cast<float>(brightness);
+    void measure(const vulkan::Buffer& image, const vulkan::Buffer& curve) {
         if (focus_responds(plan_)) {
-            dispatch(response_, {{BINDING_IMAGE, &image}, {BINDING_RESPONSES, &responses_}}, plan, pixels_);
+            dispatch(response_, {{BINDING_IMAGE, &image}, {BINDING_RESPONSES, &responses_}}, plan_, pixels_);
         }
         dispatch(rows_,
                  {{BINDING_IMAGE, &image},
                   {BINDING_RESPONSES, &responses_},
                   {BINDING_WEIGHTS, &weights_},
                   {BINDING_ROW_SUMS, &row_sums_}},
-                 plan, pixels_);
+                 plan_, pixels_);
         dispatch(columns_, {{BINDING_ROW_SUMS, &row_sums_}, {BINDING_WEIGHTS, &weights_}, {BINDING_CURVE, &curve}},
-                 plan, pixels_);
+                 plan_, pixels_);
     }
 
     void measure_mean(std::span<const Share> shares, const vulkan::Buffer& curve) {
         weighted_mean(
             shares, [&](int k) -> const vulkan::Buffer& { return image_at(k); }, mean_image_, 0, channels_* pixels_);
-        measure(mean_image_, brightness_of_.of(shares), curve);
+        measure(mean_image_, curve);
     }
 
     // first_to: in values.
@@ -321,7 +317,6 @@ class DeviceFocusPlanes final : public FocusPlanes {
     }
 
     FocusPlan plan_;
-    ImageBrightness brightness_of_;
     bool images_averaged_;
     int averaged_curves_;
     std::size_t pixels_;

@@ -42,8 +42,7 @@ class FocusPlanes {
     virtual ~FocusPlanes() = default;
     // The next image; they come in order.
     virtual void take(int image, Channels channels) = 0;
-    // The focus measure of the weighted mean of images taken, relative to the brightness of the whole mean image: the
-    // curves' values at `image`.
+    // The focus measure of the weighted mean of images taken: the curves' values at `image`.
     virtual void measure(int image, std::span<const Share> shares) = 0;
     // The focus measure of the image itself, which was measured last, for follow_single() of every pixel. Keeps its
     // square.

@@ -42,28 +42,4 @@ typename Arithmetic::Plan plan_in(const focus::f64::FocusPlan& record) {
 
 #undef VKFV_CONVERT
 
-// The records of curves whose values are so many times as large.
-inline focus::f64::CurveRecord times(focus::f64::CurveRecord record, double factor) {
-    for (double* value : {&record.largest, &record.sum, &record.bend, &record.first, &record.latest, &record.variation,
-                          &record.highest, &record.valley, &record.rival, &record.peak_1, &record.peak_2,
-                          &record.peak_3, &record.peak_4, &record.joint}) {
-        *value *= factor;
-    }
-    for (double* square : {&record.squares, &record.alone, &record.joint_squares, &record.alone_sum}) {
-        *square *= factor * factor;
-    }
-    return record;
-}
-
-inline focus::f64::SingleRecord times(focus::f64::SingleRecord record, double factor) {
-    for (double* value : {&record.first, &record.sum, &record.before_1, &record.before_2, &record.before_3,
-                          &record.highest, &record.valley, &record.rival}) {
-        *value *= factor;
-    }
-    for (double* square : {&record.squares, &record.steps_1, &record.steps_2, &record.steps_3}) {
-        *square *= factor * factor;
-    }
-    return record;
-}
-
 } // namespace vkfv::topography

@@ -66,7 +66,7 @@ std::vector<Grid<typename Arithmetic::Sums>> along_rows(const typename Arithmeti
     return fields;
 }
 
-// weights: of the window, window_weight()'s. plan.brightness: what the measure is divided by.
+// weights: of the window, window_weight()'s.
 template <class Arithmetic>
 Grid<float> focus_values(const Channels& image, const typename Arithmetic::Plan& plan,
                          const std::vector<typename Arithmetic::Real>& weights) {

@@ -2,7 +2,6 @@
 
 #include "topography/focus_records.hpp"
 #include "topography/focus_windows.hpp"
-#include "topography/image_brightness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +49,6 @@ class HostFocusPlanes final : public FocusPlanes {
     }
 
     void take(int image, Channels channels) override {
-        brightness_.add(channels);
         images_[image] = std::move(channels);
         const auto share = static_cast<float>(Arithmetic::ratio(1, static_cast<Real>(plan_.channels)));
         for (std::size_t channel = 0; channel < images_[image].size(); ++channel)
@@ -60,11 +58,11 @@ class HostFocusPlanes final : public FocusPlanes {
     }
 
     void measure(int image, std::span<const Share> shares) override {
-        curves_[image] = images_averaged_ ? measure_of_mean(shares) : measure_of(image);
+        curves_[image] = images_averaged_ ? measure_of(mean_image(shares)) : measure_of(images_[image]);
     }
 
     void measure_alone(int image) override {
-        const Grid<float> values = images_averaged_ ? measure_of(image) : curves_[image];
+        const Grid<float> values = images_averaged_ ? measure_of(images_[image]) : curves_[image];
         Grid<float>& squares = squares_[image];
         squares = Grid<float>(plan_.columns, plan_.rows);
         pixels([&](std::size_t k) {
@@ -81,7 +79,9 @@ class HostFocusPlanes final : public FocusPlanes {
         alone_[image] = weighted_mean(shares, [&](int k) -> const Grid<float>& { return squares_[k]; });
     }
 
-    void measure_joint(int image, std::span<const Share> shares) override { joint_[image] = measure_of_mean(shares); }
+    void measure_joint(int image, std::span<const Share> shares) override {
+        joint_[image] = measure_of(mean_image(shares));
+    }
 
     void gather(int image) override {
         for (const std::uint32_t pixel : gathered_pixels_)
@@ -114,15 +114,7 @@ class HostFocusPlanes final : public FocusPlanes {
     }
 
   private:
-    Grid<float> measure_of(int image) const { return measure_of(images_[image], brightness_.of(image)); }
-    Grid<float> measure_of_mean(std::span<const Share> shares) const {
-        return measure_of(mean_image(shares), brightness_.of(shares));
-    }
-    Grid<float> measure_of(const Channels& image, double brightness) const {
-        auto plan = plan_;
-        plan.brightness = static_cast<Real>(brightness);
-        return focus_values<Arithmetic>(image, plan, weights_);
-    }
+    Grid<float> measure_of(const Channels& image) const { return focus_values<Arithmetic>(image, plan_, weights_); }
 
     Channels mean_image(std::span<const Share> shares) const {
         Channels mean;
@@ -157,7 +149,6 @@ class HostFocusPlanes final : public FocusPlanes {
     typename Arithmetic::Plan plan_;
     std::vector<Real> weights_;
     std::vector<std::uint32_t> gathered_pixels_;
-    ImageBrightness brightness_;
     Ring<Channels> images_;
     Ring<Grid<float>> curves_;
     Ring<Grid<float>> averaged_;

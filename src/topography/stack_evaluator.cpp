@@ -1,6 +1,5 @@
 #include "core/messages/error.hpp"
 #include "core/threads/parallel_rows.hpp"
-#include "topography/focus_records.hpp"
 #include "topography/hidden_levels.hpp"
 #include "topography/noise/curve_noise.hpp"
 #include "topography/places_of_maxima.hpp"
@@ -439,16 +438,6 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     const double brightness = mean_of(stack.brightness) / images;
     const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
-    const auto is_dark = [&](double here) { return !(here > dark * brightness); };
-    // Curves were divided by the brightness of whole images. What is said of noise and contrast is relative to the
-    // brightness around each point, the same for all images.
-    const auto local = [&](std::size_t pixel) {
-        const double here = brightness_around.values[pixel] / images;
-        return is_dark(here) ? 1 : brightness / here;
-    };
-    for (std::size_t k = 0; k < stack.gathered.size(); ++k) {
-        stack.gathered[k] *= static_cast<float>(local(curve_pixels_[k % curve_pixels_.size()]));
-    }
     Topography result =
         nothing_measured(columns_, rows_, {.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch});
     const NoiseModel noise_model = noise_of_probes.get();
@@ -472,10 +461,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const CurveNoise curve_noise(found.value_or(assumed(gain * gain / whole_window, figures.curve_width_steps)),
                                  axial_weights_, finder, images);
     std::vector<focus::f64::CurveRecord> of_curves(curve_pixels_.size());
-    const auto judge_point = [&](std::size_t pixel, const focus::f64::CurveRecord& of_image,
-                                 const focus::f64::SingleRecord& single_of_image) {
-        const focus::f64::CurveRecord curve = times(of_image, local(pixel));
-        const focus::f64::SingleRecord single = times(single_of_image, local(pixel));
+    const auto judge_point = [&](std::size_t pixel, const focus::f64::CurveRecord& curve,
+                                 const focus::f64::SingleRecord& single) {
         const int row = static_cast<int>(pixel / static_cast<std::size_t>(columns_));
         const int column = static_cast<int>(pixel % static_cast<std::size_t>(columns_));
         const double pixels = window_.pixels(columns_, rows_, column, row);
@@ -492,8 +479,9 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         }
         result.peaks(column, row) = static_cast<std::uint16_t>(focus::f64::count_peaks(curve, images));
         PointState& state = result.state(column, row);
-        state = is_dark(here) ? PointState::dark
-                              : judge(curve, single, {image_noise, averaging, pixels / whole_window}, figures);
+        state = here > dark * brightness
+                    ? judge(curve, single, {image_noise, averaging, pixels / whole_window}, figures)
+                    : PointState::dark;
         if (state == PointState::measured) {
             const double found = curve.at + curve.offset;
             result.height.height(column, row) = height_at(found);

@@ -12,7 +12,6 @@ import numpy
 from .array import Array
 
 REACH = 2  # pixels that the widest response sees on either side
-DARK = 0.01  # a window with less of the stack's mean brightness is not measured
 
 
 def window_weights(width_px: int, shape: str) -> numpy.ndarray:
@@ -99,8 +98,7 @@ def focus_curves(
     """The focus measure of each image (z, y, x) at these rows and columns, averaged along z as the evaluation does.
 
     settings: focus_measure, window_px, window_shape and smoothing_steps, as results.json has them under "topography".
-    Images of several channels (z, y, x, channel) are not taken. The values are dimensionless: relative to the brightness
-    of each image, times one factor a pixel that makes them relative to the mean brightness in its window.
+    Images of several channels (z, y, x, channel) are not taken. The values are dimensionless.
     """
     weights = window_weights(settings["window_px"], settings["window_shape"])
     measure = settings["focus_measure"]
@@ -113,21 +111,17 @@ def focus_curves(
         used = numpy.flatnonzero(of_image)
         # Beyond its border an image goes on as its own mirror image.
         image = numpy.tensordot(of_image[used], images.values[used].astype(float), axes=1)
-        brightness = image.mean()
         image = numpy.pad(image, REACH, mode="reflect")
         image = image[part_y.start : part_y.stop + 2 * REACH, part_x.start : part_x.stop + 2 * REACH]
         grey = image[REACH:-REACH, REACH:-REACH]
+        level = _windowed(grey, weights, (inner_y, inner_x))
         if measure == "standard-deviation":
-            level = _windowed(grey, weights, (inner_y, inner_x))
             offset = grey.mean()  # no difference of large sums
             energy = _windowed((grey - offset) ** 2, weights, (inner_y, inner_x)) - (level - offset) ** 2
             amplitude = numpy.sqrt(numpy.maximum(energy, 0))
         else:
             energy = _windowed(_response(image, measure), weights, (inner_y, inner_x))
             amplitude = energy if measure in MAGNITUDES else numpy.sqrt(energy)
-        curves[k] = amplitude / brightness if brightness > 0 else 0
-    of_all = images.values.mean(axis=0, dtype=float)
-    around = _windowed(of_all[part_y, part_x], weights, (inner_y, inner_x))
-    curves *= numpy.divide(of_all.mean(), around, out=numpy.ones_like(around), where=around > DARK * of_all.mean())
+        curves[k] = numpy.divide(amplitude, level, out=numpy.zeros_like(amplitude), where=level > 0)
     coords = {"z": images.z, "y": images.y[rows], "x": images.x[columns]}
     return Array(numpy.tensordot(share, curves, axes=1), ("z", "y", "x"), coords, "", "focus measure")
