@@ -100,8 +100,9 @@ const KeyTable& output_keys() {
 const KeyTable& sweep_keys() {
     static const KeyTable table{.path = "sweep",
                                 .presence = KeyTable::Presence::optional,
-                                .meaning = "What vkfv --sweep varies: every combination of the parameters' values. The same "
-                                           "light is traced once for all cameras and evaluations.",
+                                .meaning =
+                                    "What vkfv --sweep varies: every combination of the parameters' values. The same "
+                                    "light is traced once for all cameras and evaluations.",
                                 .subject = "a sweep",
                                 .kind = "of",
                                 .keys = {&of, &z, &repeats}};
