@@ -135,7 +135,7 @@ TEST(Program, RunsWhereItWasInstalled) {
     ASSERT_EQ(std::system(install.c_str()), 0);
     for (const char* file :
          {"share/man/man1/vkfv.1.gz", "share/bash-completion/completions/vkfv", "share/doc/vkfv/README.md",
-          "share/doc/vkfv/docs/tutorial.md", "share/doc/vkfv/assets/demo.png"}) {
+          "share/doc/vkfv/docs/tutorial.md", "share/doc/vkfv/assets/star.png"}) {
         EXPECT_TRUE(std::filesystem::file_size(folder / "usr" / file) > 0) << file;
     }
     std::filesystem::create_directories(folder / "elsewhere");
