@@ -50,10 +50,15 @@ void warn_of_noise(const Configuration& configuration, const Evaluation& evaluat
 
 namespace {
 
-std::shared_ptr<const StackScene::Parts> parts_of(const Configuration& configuration) {
-    auto parts = std::make_shared<StackScene::Parts>();
+// surfaces: none: the specimen is made.
+specimen::Specimen specimen_of(const Configuration& configuration, Surfaces* surfaces) {
     enter_stage("specimen");
-    parts->specimen = make_specimen(configuration);
+    return surfaces != nullptr ? surfaces->of(configuration).specimen : make_specimen(configuration);
+}
+
+std::shared_ptr<const StackScene::Parts> parts_of(const Configuration& configuration, specimen::Specimen specimen) {
+    auto parts = std::make_shared<StackScene::Parts>();
+    parts->specimen = std::move(specimen);
     enter_stage("instrument");
     parts->instrument = assemble_instrument(configuration, parts->specimen, configuration.scan->positions());
     return parts;
@@ -62,7 +67,10 @@ std::shared_ptr<const StackScene::Parts> parts_of(const Configuration& configura
 } // namespace
 
 StackScene::StackScene(const Configuration& its_configuration)
-    : StackScene(its_configuration, parts_of(its_configuration)) {}
+    : StackScene(its_configuration, parts_of(its_configuration, specimen_of(its_configuration, nullptr))) {}
+
+StackScene::StackScene(const Configuration& its_configuration, Surfaces& surfaces)
+    : StackScene(its_configuration, parts_of(its_configuration, specimen_of(its_configuration, &surfaces))) {}
 
 StackScene::StackScene(const Configuration& its_configuration, std::shared_ptr<const Parts> parts)
     : parts_(std::move(parts)), configuration(its_configuration), positions(configuration.scan->positions()),

@@ -6,6 +6,7 @@
 #include "measurement/evaluation/evaluation_files.hpp"
 #include "measurement/scene/known_truth.hpp"
 #include "measurement/scene/phase_limits.hpp"
+#include "measurement/scene/surfaces.hpp"
 #include "measurement/scene/wave_limits.hpp"
 #include "measurement/scene/working_devices.hpp"
 #include "optics/instrument/instrument.hpp"
@@ -31,6 +32,8 @@ class StackScene {
 
     // Throws InputError. The configuration must outlive it.
     explicit StackScene(const Configuration& configuration);
+    // The same, of a surface that may be there already.
+    StackScene(const Configuration& configuration, Surfaces& surfaces);
     // The same of parts that were made for another configuration with the same ones.
     StackScene(const Configuration& configuration, std::shared_ptr<const Parts> parts);
 

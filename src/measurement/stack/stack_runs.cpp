@@ -157,7 +157,9 @@ StackResult StackRuns::measure(const Configuration& configuration, Progress& pro
     const std::string key = light_key(configuration);
     if (!light_ || light_->key != key) {
         light_.reset(); // before the next takes memory
-        light_ = Light{.key = key, .parts = StackScene(configuration).parts(), .tracer = nullptr};
+        // The surface alone may be that of the next stack, of another material or instrument.
+        const StackScene made = others.more ? StackScene(configuration, surfaces_) : StackScene(configuration);
+        light_ = Light{.key = key, .parts = made.parts(), .tracer = nullptr};
     }
     const StackScene scene(configuration, light_->parts);
     StackResult result;

@@ -3,6 +3,7 @@
 
 #include "configuration/configuration.hpp"
 #include "core/messages/progress.hpp"
+#include "measurement/scene/surfaces.hpp"
 #include "measurement/scene/working_devices.hpp"
 #include "measurement/stack/stack.hpp"
 #include "measurement/stack/stack_parts.hpp"
@@ -29,6 +30,7 @@ struct StackAmongOthers {
     // folders, of the light that is traced now.
     std::vector<const Configuration*> same_light;
     bool light_again = false; // a stack with the same light_key() follows
+    bool more = false;        // any other stack follows
 };
 
 class StackRuns {
@@ -55,6 +57,7 @@ class StackRuns {
     std::string selector_;
     std::optional<WorkingDevices> devices_;
     std::optional<Light> light_;
+    Surfaces surfaces_;
 };
 
 } // namespace vkfv::measurement

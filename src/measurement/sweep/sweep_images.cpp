@@ -6,7 +6,6 @@
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "scan/store.hpp"
-#include "specimen/geometry_digest.hpp"
 
 #include "trace/interface/ledger.hpp"
 
@@ -63,19 +62,6 @@ std::string image_digest(const Configuration& configuration, const std::string& 
 }
 
 } // namespace
-
-const Surfaces::Surface& Surfaces::of(const Configuration& configuration) {
-    specimen::Description geometry = configuration.specimen.value();
-    geometry.material = {};
-    geometry.where = {};
-    if (!made_of_ || *made_of_ != geometry) {
-        surface_.specimen = make_specimen(configuration);
-        surface_.digest = specimen::geometry_digest(surface_.specimen);
-        made_of_ = std::move(geometry);
-    }
-    surface_.specimen.material = configuration.specimen->material;
-    return surface_;
-}
 
 SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name, Surfaces& surfaces,
                    StackRuns& runs) {

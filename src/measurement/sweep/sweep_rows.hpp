@@ -4,31 +4,16 @@
 #include "configuration/configuration.hpp"
 #include "core/files/result_folder.hpp"
 #include "core/messages/progress.hpp"
+#include "measurement/scene/surfaces.hpp"
 #include "measurement/stack/stack_runs.hpp"
 #include "measurement/sweep/sweep_report.hpp"
-#include "specimen/specimen.hpp"
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace vkfv::measurement {
-
-// Most sweeps do not vary the surface, and making it may take longer than tracing an image: so the last one is kept.
-class Surfaces {
-  public:
-    struct Surface {
-        specimen::Specimen specimen; // with the material asked for
-        std::string digest;          // of the geometry
-    };
-    const Surface& of(const Configuration& configuration);
-
-  private:
-    std::optional<specimen::Description> made_of_;
-    Surface surface_;
-};
 
 // An image and its figures, under a name in the results, from an earlier run if they are there and whole. runs: its
 // devices are used.

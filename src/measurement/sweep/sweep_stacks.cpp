@@ -106,6 +106,7 @@ std::string SweptStacks::plan() const {
 
 StackAmongOthers SweptStacks::others_of(std::size_t stack) const {
     StackAmongOthers others;
+    others.more = stack + 1 < stacks_.size();
     std::set<std::string> made = {keys_[stack].images};
     for (std::size_t k = 0; k < stacks_.size(); ++k) {
         if (k < stack && keys_[k].images == keys_[stack].images) {
