@@ -1,4 +1,4 @@
-// What every kernel of the trace begins with: the physics, what it shares with the host, and what it is bound to.
+// Every kernel of the trace includes this file first: the physics, the records shared with the host, and the bindings.
 #extension GL_EXT_scalar_block_layout : require
 #include "physics/lang.glsl"
 #include "device/numbers.glsl"
@@ -21,7 +21,7 @@ SpectralBin spectral_bin(int index) { return spectrum[index]; }
 LightField light_field() { return instrument.light_field; }
 uint features() { return scene_features; }
 
-// Both with what the kernel knows as constants.
+// Instrument and specimen with those fields replaced that a specialised kernel knows as constants.
 Instrument known_instrument() {
     Instrument known = instrument;
 #ifdef VKFV_SPECIALISED

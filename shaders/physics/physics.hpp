@@ -1,9 +1,9 @@
 // The C++ side of the common language (see lang.glsl): everything in this folder as vkfv::physics::f64 (double,
 // the reference) and vkfv::physics::f32 (float, the device's arithmetic on the host).
 //
-// A scene, handed to the functions that take one, has:
+// A scene, handed to the functions that take one, has these members:
 //   Surface surface_at(int index) const;
-//   EmissionCell emission_cell(uvec2 path) const;      only for forward paths
+// EmissionCell emission_cell(uvec2 path) const;      only for forward paths
 //   uint features() const;                             FEATURE_* of its trains
 //   SpectralBin spectral_bin(int index) const;         only with FEATURE_SPECTRUM
 //   Hit specimen_hit(real3 origin, real3 direction) const;

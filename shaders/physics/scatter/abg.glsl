@@ -9,7 +9,7 @@
 // absorbs
 // table
 
-// d^g
+// d^g, for a distance d > 0.
 VKFV_FUNCTION real abg_power(real abg_g, real distance) { return exp(abg_g * log(max(distance, real(1e-30)))); }
 
 // Proposals have the density 1 / B up to the roll-off and d^-g from there to 1, which is nowhere more than twice the
@@ -25,12 +25,12 @@ VKFV_FUNCTION AbgProposal abg_proposal(real abg_b, real abg_g, real u) {
     real inner = real(0.5) * exp(-q * y_0);
     real outer = even ? y_0 : -exp_minus_one(-q * y_0) / q;
     real place = u * (inner + outer);
-    real beyond = max(inner + outer - place, real(0.0)); // of the mass, between there and d = 1
+    real beyond = max(inner + outer - place, real(0.0)); // mass of the proposals between this place and d = 1
     real y = real(0.0);
     if (place < inner) {
         y = y_0 - real(0.5) * log(max(place / inner, real(1e-30)));
     } else {
-        // exp(-q y), by the end of the two at which its digits are not lost.
+        // exp(-q y) is taken from that end of the range at which its digits are not lost.
         bool far = q * beyond > real(0.25);
         real grown = far ? log(q * (place - inner) + exp(-q * y_0)) : log_one_plus(-q * beyond);
         y = even ? beyond : -grown / q;
@@ -58,7 +58,7 @@ VKFV_FUNCTION ScatterTry abg_try(real abg_b, real abg_g, Incidence incidence, re
     return result;
 }
 
-// The table has A.
+// The BSDF; A is table[0].
 VKFV_FUNCTION real abg_bsdf(real abg_b, real abg_g, real table[LOBE_TABLE_SIZE], Incidence incidence, real3 outgoing) {
     return table[0] / (abg_b + abg_power(abg_g, sqrt(cosines_apart_squared(incidence, outgoing))));
 }

@@ -17,7 +17,7 @@ VKFV_FUNCTION real ggx_conductor_reflectance(real refractive_index, real extinct
 
 VKFV_FUNCTION ScatterTry ggx_conductor_try(real refractive_index, real extinction_coefficient, real alpha,
                                            Incidence incidence, real u0, real u1, real u2) {
-    ScatterTry facet = ggx_try(alpha, incidence, u0, u1, real(0.0)); // whose direction does not depend on u2
+    ScatterTry facet = ggx_try(alpha, incidence, u0, u1, real(0.0)); // the direction does not depend on u2
     real reflectance = ggx_conductor_reflectance(refractive_index, extinction_coefficient, incidence, facet.direction);
     return ggx_try(alpha, incidence, u0, u1, u2 / max(reflectance, real(1e-30)));
 }

@@ -13,7 +13,7 @@
 VKFV_FUNCTION real harvey_shack_distance(real shoulder, real slope, real u) {
     real p = real(1.0) + real(0.5) * slope;
     real last = log((real(1.0) + shoulder * shoulder) / (shoulder * shoulder));
-    // exp(p l), where it is small without the cancellation.
+    // exp(p l) is formed without cancellation where it is small.
     bool far = p < real(0.0) && u > real(0.25);
     real grown = far ? log((real(1.0) - u) + u * exp(p * last)) : log_one_plus(u * exp_minus_one(p * last));
     real l = abs(p) < real(1e-6) ? u * last : grown / p;
@@ -39,7 +39,7 @@ VKFV_FUNCTION ScatterTry harvey_shack_try(real shoulder, real slope, Incidence i
     return result;
 }
 
-// The table has f_0.
+// The BSDF; f_0 is table[0].
 VKFV_FUNCTION real harvey_shack_bsdf(real shoulder, real slope, real table[LOBE_TABLE_SIZE], Incidence incidence,
                                      real3 outgoing) {
     return table[0] * harvey_shack_power(shoulder, slope, cosines_apart_squared(incidence, outgoing));
