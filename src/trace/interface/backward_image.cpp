@@ -53,8 +53,8 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
     using namespace physics::f64;
     BackwardOptics optics = instrument.turned.value().optics;
     optics.pupil_radius = start_radius(*instrument.turned, plan);
-    // The peak compares the sharpest lobe to the source's cone: its share of light in the cone about its mirror
-    // direction, if it were flat over the cone.
+    // `peak` is the largest share of light that a lobe would send into the source's cone along its mirror direction, if
+    // its BSDF were flat over the cone.
     double peak = 0;
     const bool is_ring = (instrument.features & FEATURE_RING) != 0;
     const double solid_angle = is_ring ? optics.ring_area / (optics.ring.distance * optics.ring.distance)
