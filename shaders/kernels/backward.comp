@@ -27,7 +27,7 @@ layout(constant_id = CONSTANT_QUERY_CAPACITY) const uint query_capacity =
     12u; // more than a path asks: one at each bounce, and one at its end
 SourceQuery queries[query_capacity];
 uint query_count = 0u;
-// With pupil cells: the addresses at which the light of the path under way, and of each query, is added.
+// The addresses at which the light of the path under way, and of each query, is added; used with pupil cells.
 uint64_t path_cell = uint64_t(0);
 uint64_t query_cells[query_capacity];
 

@@ -4,7 +4,7 @@
 #include "device/kernel.glsl"
 
 layout(location = 0) rayPayloadInEXT Hit met;
-hitAttributeEXT vec2 barycentrics; // of triangles alone
+hitAttributeEXT vec2 barycentrics; // barycentrics of a triangle; not used for boxes
 
 void main() {
     uint primitive = uint(gl_PrimitiveID);

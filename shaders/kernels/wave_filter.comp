@@ -72,7 +72,7 @@ void main() {
     // rows and both: these four need the same numbers of the planes.
     uint lane = gl_LocalInvocationIndex % 32u;
     uint mirror = gl_LocalInvocationIndex / 32u;
-    uint blocks = groups.columns / 2u / 32u + 1u; // of the columns from 0 to the middle
+    uint blocks = groups.columns / 2u / 32u + 1u; // blocks of the columns from 0 to the middle
     uint block = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     uint column = block % blocks * 32u + lane;
     uint row = block / blocks;

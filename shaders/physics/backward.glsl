@@ -221,7 +221,7 @@ VKFV_FUNCTION Candidate draw_in_part(SeenPart part, real u0, real u1) {
     real2 slope = part.centre + real2(turn.cosine, turn.sine) * rho;
     Candidate candidate =
         in_part(part, real3(slope.x, slope.y, real(1.0)) * (real(1.0) / sqrt(real(1.0) + dot(slope, slope))));
-    candidate.usable = true; // also on the edge of the part, where rounding decides
+    candidate.usable = true; // usable even on the edge of the part, where rounding decides
     return candidate;
 }
 
@@ -335,7 +335,7 @@ inline bool lobe_is_delta(Lobe lobe) { return lobe_is_delta(NoNumbers{}, lobe); 
 
 // The point on a pixel and in the pupil from which a path starts.
 struct BackwardStart {
-    real column; // of the pixel, in [0, 1)
+    real column; // column within the pixel, in [0, 1)
     real row;
     real2 pupil; // a point of the unit disc, as for look_from_detector()
 };

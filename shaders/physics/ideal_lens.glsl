@@ -5,7 +5,7 @@
 struct IdealLens {
     bool passes;      // false: no direction has these cosines
     real3 position;   // on the back focal plane, in the frame of the lens (principal planes at z = 0)
-    real3 direction;  // of length index
+    real3 direction;  // as long as the index
     real path_length; // mm, optical path from the given point to the back focal plane
 };
 

@@ -7,7 +7,7 @@ LightField light_field(const Scene& scene) {
     return scene.light_field();
 }
 #else
-LightField light_field(); // of the instrument at hand
+LightField light_field(); // light field of the instrument
 #endif
 
 // The share of light that the field lets through. x, y: mm, in the plane's frame of the light from the source.

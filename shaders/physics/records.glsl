@@ -66,9 +66,9 @@ struct Dispersion {
     VKFV_DISPERSION_FIELDS(VKFV_DECLARE)
 };
 
-// One refracting surface, mirror, ideal lens or stop, in the frame of its own vertex; light travels towards +z.
-// Sag: z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a4 r^4 + ... + a16 r^16 (ISO 10110-12, eq. 5).
-// From the frame of the previous vertex: p' = rotation (p - (decentre_x, decentre_y, distance)).
+// A refracting surface, mirror, ideal lens or stop, in the frame of its own vertex; light travels towards +z.
+// The sag is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a4 r^4 + ... + a16 r^16 (ISO 10110-12, eq. 5).
+// Points come from the frame of the previous vertex by p' = rotation (p - (decentre_x, decentre_y, distance)).
 // KNOWN: a field of the k-th surface that a kernel can have as a constant, with its place in the order of the surface's
 // constants (device/prescription.glsl).
 #define VKFV_SURFACE_FIELDS(FIELD, KNOWN, k) \
@@ -298,7 +298,7 @@ const uint SHAPE_CHIRP = 4u;
 
 const int LOBE_TABLE_SIZE = 16;
 
-// One lobe of a material's scatter; shaders/physics/scatter/ has the models.
+// A lobe of a material's scatter; shaders/physics/scatter/ has the models.
 #define VKFV_LOBE_FIELDS(FIELD, ARRAY) \
     FIELD(uint, model)                  /* SCATTER_* */ \
     FIELD(real, weight)                 /* share of the incident light */ \

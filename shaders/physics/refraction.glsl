@@ -2,7 +2,7 @@
 
 struct Refraction {
     bool transmitted; // false: totally reflected
-    real3 direction;  // of length index_after
+    real3 direction;  // as long as index_after
 };
 
 // Snell's law for the angle alone: sin^2 behind the interface; 1 or more means total reflection.

@@ -130,7 +130,7 @@ VKFV_FUNCTION RingPoint ring_point(RingLight ring, real u0, real u1) {
     real w = real(2.0) * constant /
              (radius + sqrt(max(radius * radius - real(2.0) * ring.elevation_sine * constant, real(0.0))));
     real rho = radius - w * ring.elevation_sine;
-    // This frame is the specimen's turned by half a turn about x: y and z change sign.
+    // Outward and axis are in this frame, which is the specimen's turned by half a turn about x: y and z change sign.
     real3 outward = real3(azimuth.cosine, -azimuth.sine, real(0.0));
     real3 axis = real3(real(0.0), real(0.0), real(1.0));
     RingPoint point;

@@ -32,9 +32,9 @@ VKFV_FUNCTION real surface_transmittance(Surface surface, real cosine, real inde
                      interface_reflectance(surface, index_before, index_after, min(cosine, real(1.0)), wave_number);
 }
 
-// One surface: transfer, intersection, edge, refraction. `before` is in the frame of the previous vertex. A plane
-// mirror leaves the light's way as it was: all that follows it stands in the space that the mirror shows. Light that
-// has ended keeps its status, and its ray goes on without meaning: to hold it would cost every ray.
+// Light through one surface: transfer, intersection, edge, refraction. `before` is in the frame of the previous vertex.
+// A plane mirror leaves the light's way unchanged: all that follows stands in the space that the mirror shows. Light
+// that has ended keeps its status, and its ray continues without meaning: to hold it would cost every ray.
 VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult before, bool apertures, Light light,
                                         uint present) {
     real3 start = real3(before.ray.position.x, before.ray.position.y, before.ray.position.z - surface.distance);

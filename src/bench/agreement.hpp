@@ -18,7 +18,7 @@ Measured measured_counts(const Grid<double>& flux, double per_ray);
 
 struct Agreement {
     double total_z = 0;    // difference of the totals in standard errors
-    double chi_square = 0; // of the differences between blocks of block_side x block_side pixels
+    double chi_square = 0; // chi-square of the differences between blocks of block_side x block_side pixels
     int degrees = 0;       // blocks that are not empty
     double p = 1;          // probability of a larger difference if both have the same expected value
 

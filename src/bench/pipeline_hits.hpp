@@ -19,7 +19,7 @@ struct HitDifferences {
     std::uint64_t both = 0;          // met by both
     std::uint64_t one_alone = 0;     // met by only one
     std::uint64_t apart = 0;         // met by both, at heights more than 1 nm apart
-    std::uint64_t unexplained = 0;   // of the two before, those that are not rounding
+    std::uint64_t unexplained = 0;   // differences among one_alone and apart that are not rounding
     double largest_height_apart = 0; // mm, of rays met by both that are not apart
 };
 

@@ -51,7 +51,7 @@ void draw_histogram(Svg& svg, glm::dvec2 corner, glm::dvec2 size, std::string_vi
 // Values over an area, in micrometres unless the labels say otherwise; NaN is shown as not measured.
 struct Map {
     std::string title;
-    std::string unit = "um"; // beside the colour bar
+    std::string unit = "um"; // unit of the values, shown beside the colour bar
     Grid<double> values;
     double x0 = 0, y0 = 0;    // um, middle of value (0, 0)
     glm::dvec2 pitch{1, 1};   // um

@@ -13,7 +13,7 @@ namespace vkfv::report {
 struct ContactSheet {
     std::string title;
     std::string row_label, column_label;                // names of the varied parameters: "g"
-    std::vector<std::string> row_values, column_values; // of each row and column
+    std::vector<std::string> row_values, column_values; // values of the parameters in each row and column
     std::vector<Grid<float>> images;                    // row by row, the first row on top; one size
     std::vector<std::string> notes;                     // under each image
     double brightest = 2;

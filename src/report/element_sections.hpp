@@ -32,8 +32,8 @@ class ElementSections {
         return backs_[i];
     }                                                         // for a mirror: 1 where light comes towards its z, else
                                                               // -1
-    double extent() const { return extent_; }                 // of the instrument; sizes of housings are relative to it
-    double slab_thickness() const { return 0.012 * extent_; } // of the specimen's slab
+    double extent() const { return extent_; }                 // size of the instrument, to which housings are relative
+    double slab_thickness() const { return 0.012 * extent_; } // thickness of the specimen's slab
 
     double sag(std::size_t i, double radius) const;
     glm::dvec2 on_surface(std::size_t i, double radius) const;

@@ -19,8 +19,8 @@ int block_for(int columns, int rows, double most, int most_a_side);
 struct Frames {
     int block = 1;         // side in pixels of the image block that one pixel of a frame shows
     int every = 1;         // one frame for so many images
-    int columns = 0;       // of a frame
-    int rows = 0;          // of a frame
+    int columns = 0;       // pixels of a frame
+    int rows = 0;          // pixels of a frame
     float white = 0;       // value shown as white; 0 is black
     std::vector<double> z; // mm
     std::vector<std::string> pngs;

@@ -23,7 +23,7 @@ struct Label {
     enum class Place { beside, over, behind, bracket } place = Place::beside;
     std::string text;
     Box part;
-    glm::dvec2 normal{};          // of a mirror, towards its back
+    glm::dvec2 normal{};          // direction towards the back of a mirror
     bool about_objective = false; // true: also in the enlarged picture of the objective
 };
 

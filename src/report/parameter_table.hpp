@@ -14,7 +14,7 @@ namespace vkfv::report {
 
 struct ParameterRow {
     std::string name; // "Sa"
-    std::string unit; // of `value`: "um", "um3_per_um2", "deg", "percent", "per_mm2", "per_mm" or none
+    std::string unit; // unit of `value`: "um", "um3_per_um2", "deg", "percent", "per_mm2", "per_mm" or none
     double value = 0; // NaN: undefined
 
     std::string key() const; // "Sa_um"

@@ -15,8 +15,8 @@ struct RoomRay {
 
     Bundle bundle = Bundle::imaging_axis;
     std::vector<glm::dvec3> vertices; // mm, in the frame of optics::Element
-    // By vertex, the element of Instrument::elements on which it lies; no_element: the source or the plane of best
-    // focus. An ideal lens has two vertices: light enters one principal plane and leaves the other, which coincide.
+    // The element of Instrument::elements on which each vertex lies; no_element: the source or the plane of best focus.
+    // An ideal lens has two vertices: light enters one principal plane and leaves the other, which coincide.
     std::vector<int> elements;
 };
 

@@ -72,7 +72,7 @@ struct Numbers {
     std::string behind;
 };
 
-// None if the names do not differ in exactly one number.
+// Finds the number in which the names differ; none if they do not differ in exactly one number.
 std::optional<Numbers> numbers_of(const std::vector<std::string>& names) {
     std::vector<Parts> all;
     std::ranges::transform(names, std::back_inserter(all), parts_of);

@@ -18,7 +18,7 @@ struct Stage {
     double scale_error = 0;                  // relative
     std::vector<double> linearity_positions; // ascending, with an error each; linear between, constant beyond
     std::vector<double> linearity_errors;
-    double periodic_amplitude = 0; // of a sine over the position
+    double periodic_amplitude = 0; // amplitude of a sine over the position
     double periodic_period = 0;
     double periodic_phase = 0; // at position 0
 

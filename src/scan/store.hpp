@@ -136,7 +136,7 @@ struct SealedImage {
     std::string ledger_row;
 };
 
-// All files among a stack's images, in the order of their names.
+// The image files of a stack, in the order of their names.
 std::vector<SealedImage> sealed_images(const std::filesystem::path& folder);
 
 // Checks the images of a stack, finished or not: whether each is intact and belongs to this stack.

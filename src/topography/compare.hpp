@@ -14,7 +14,7 @@ using surface::Band; // form and filters that both surfaces are compared after
 struct Deviation {
     double sq_measured = 0;
     double sq_true = 0;
-    double rms = 0;            // of the difference, offset and tilt removed; with the form "none" about zero, unchanged
+    double rms = 0;            // RMS difference, offset and tilt removed; with the form "none" about zero, unchanged
     double correlation = 0;    // Pearson's coefficient; 0 where either is flat
     double measured_share = 0; // points present in both, as a share of all points
     // The least-squares line of measured on true heights, measured = offset + slope * true: the instrument's

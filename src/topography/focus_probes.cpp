@@ -186,7 +186,7 @@ double FocusProbes::single_of(const Probe& probe, std::size_t image) const {
     return focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row);
 }
 
-// This is done as images come, not at the end, for which all wait.
+// Single images are followed as they come, not at the end, for which all threads wait.
 void FocusProbes::follow_singles() {
     const auto follow = [&](int k) {
         Probe& probe = probes_[static_cast<std::size_t>(k)];
@@ -574,7 +574,7 @@ IndependentImages FocusProbes::independent_images(const std::vector<double>& nei
 }
 
 double FocusProbes::measure_of_rounding(double brightness) const {
-    // This number of values shows the step between a camera's grey values. Floats have hardly any step.
+    // With so many values the step between a camera's grey values shows. Floats have hardly any step.
     constexpr std::size_t most = 4096;
     std::vector<float> values;
     for (const Probe& probe : probes_) {
@@ -646,7 +646,7 @@ bool FocusProbes::reappears(const std::vector<PlaceOfImages>& places) const {
 
 std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
                                                                  bool curves_averaged) const {
-    constexpr double least_rise = 8; // of the measure along z, over its quiet value
+    constexpr double least_rise = 8; // rise of the measure along z, over its quiet value
     constexpr double persistent = 0.25;
     constexpr double least_share = 0.02;
     const double mean = [&] {
@@ -693,7 +693,7 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
             not_persistent.push_back(*place);
         }
     }
-    if (!reappears(not_persistent)) { // it is noise, whose strength is no evidence
+    if (!reappears(not_persistent)) { // a pattern that does not reappear is noise, whose strength is no evidence
         for (std::size_t k = 0; k < shares.size(); ++k) {
             shares[k] = wide[k] ? std::numeric_limits<double>::quiet_NaN() : shares[k];
         }

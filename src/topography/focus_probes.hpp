@@ -132,9 +132,9 @@ class FocusProbes {
     struct Probe {
         int column = 0; // column of the image at which its patch begins
         int row = 0;
-        int columns = 0; // of the patch
+        int columns = 0; // size of the patch
         int rows = 0;
-        int middle_column = 0; // of the patch's middle, in the patch
+        int middle_column = 0; // place of the patch's middle in the patch
         int middle_row = 0;
         std::vector<float> values;   // image by image, channel by channel, row by row
         std::vector<double> singles; // focus measure of each image
@@ -159,7 +159,7 @@ class FocusProbes {
 
     // Second differences along z of a channel, evaluated.
     struct Differences {
-        std::vector<double> variances{}; // of a single image's noise, by the second difference at image 1, 2, ...
+        std::vector<double> variances{}; // a single image's noise, by the second difference at image 1, 2, ...
         double level = 0;                // mean brightness of all
         double variance = 0;             // mean of the smallest quarter of the variances; sparse: of all
         bool sparse = false;             // most of the values are 0

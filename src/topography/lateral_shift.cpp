@@ -114,7 +114,7 @@ Correlations correlations(const LevelledPair& pair, double sq_measured, double s
 
 // The evidence of Pearson's correlation over the overlapping points at every lag; 0 for lags with too few points.
 Grid<double> evidence_by_lag(const Correlations& of, const Reach& reach) {
-    constexpr double least_overlap = 0.25; // of the points at lag zero
+    constexpr double least_overlap = 0.25; // share of the points at lag zero
     Grid<double> evidences(2 * reach.x + 1, 2 * reach.y + 1);
     for (int j = -reach.y; j <= reach.y; ++j)
         for (int i = -reach.x; i <= reach.x; ++i) {
@@ -137,7 +137,7 @@ Grid<double> evidence_by_lag(const Correlations& of, const Reach& reach) {
 std::vector<LateralShift> shifts_of_peaks(const Grid<double>& evidences, const Reach& reach, double pitch_x,
                                           double pitch_y) {
     constexpr std::size_t most = 3;
-    constexpr double worth_a_try = 0.5; // of the best one's evidence
+    constexpr double worth_a_try = 0.5; // share of the best evidence
     struct Peak {
         double evidence;
         LateralShift shift;

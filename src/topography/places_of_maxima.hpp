@@ -32,7 +32,7 @@ double curvature_at_maximum(double bend, double offset);
 struct MaximumNearEnd {
     double place;     // its middle, in steps from that end
     double found;     // the averaged curve's maximum, in steps from that end
-    double curvature; // of the averaged curve there, curvature_at_maximum()
+    double curvature; // curvature of the averaged curve at its maximum: curvature_at_maximum()
     int image;        // image of its largest value, counted from that end
 };
 
@@ -49,7 +49,7 @@ class PlacesByWidth {
     bool feels_an_end(double at) const;
 
     struct Width {
-        double logarithm = 0; // of the width over the stack's
+        double logarithm = 0; // logarithm of the width over the stack's
         double weight = 0;    // inverse variance, up to a factor, from the curvature's dependence on the width there
     };
     // The width of the curve whose averaged maximum is found at the distance `offset` from the image of its largest

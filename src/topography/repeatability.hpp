@@ -22,7 +22,7 @@ struct SystematicAndRandom {
     double points = 0;                     // number of points that two or more repetitions measured; others do not
                                            // count
     surface::HeightMap mean_deviation;     // mm; NaN at the points that do not count
-    surface::HeightMap standard_deviation; // of one repetition, mm; NaN at the points that do not count
+    surface::HeightMap standard_deviation; // mm, of one repetition; NaN at the points that do not count
 };
 
 // deviations: measured minus true, of two or more repetitions on one grid: std::invalid_argument otherwise.

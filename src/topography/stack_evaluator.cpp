@@ -22,7 +22,7 @@ namespace vkfv::topography {
 namespace {
 
 constexpr int most_peak_range_steps = 100; // 202 curves in memory
-constexpr double dark = 0.01;              // of the stack's mean brightness
+constexpr double dark = 0.01;              // share of the stack's mean brightness
 constexpr int wide_places_a_side = 8;
 
 void require(bool good, std::string key, std::string found, std::string expected, std::string remedy) {
@@ -212,7 +212,7 @@ void StackEvaluator::check(const Channels& image, double z) const {
     require(z > z_.back(), which, fmt::format("z = {} mm after {} mm", z, z_.back()), "ascending z",
             "Order the images by z.");
     if (z_.size() >= 2) {
-        constexpr double tolerance = 0.01; // of a step: far below the noise of any height
+        constexpr double tolerance = 0.01; // share of a step: far below the noise of any height
         const double expected = z_[0] + static_cast<double>(z_.size()) * (z_[1] - z_[0]);
         require(std::abs(z - expected) <= tolerance * (z_[1] - z_[0]), which, fmt::format("z = {} mm", z),
                 fmt::format("z = {} mm, equidistant", expected), "Use a stack with one step.");
@@ -441,7 +441,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const int images = static_cast<int>(z_.size());
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     const double brightness = mean_of(stack.brightness) / images;
-    const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
+    const Grid<float> brightness_around = window_mean(stack.brightness, window_); // sum over all images
     Topography result =
         nothing_measured(columns_, rows_, {.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch});
     const NoiseModel noise_model = noise_of_probes.get();

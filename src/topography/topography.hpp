@@ -50,7 +50,7 @@ namespace vkfv::topography {
 inline constexpr double most_smoothing_steps = 100; // 1202 images in memory
 
 struct TopographyOptions {
-    // None: FocusProbes::settle() chooses it; the evaluator needs one.
+    // None lets FocusProbes::settle() choose; the evaluator needs a measure.
     std::optional<FocusMeasure> focus_measure = where_little_is_averaged;
     int window_px = 7;                           // odd, at least 3
     WindowShape window_shape = WindowShape::box; // see FocusWindow
@@ -102,7 +102,7 @@ struct StackFigures {
     double image_noise = 0;       // standard deviation of a pixel over its brightness, at the mean brightness
     double hidden_relief = 0;     // mm, HiddenLevels::mean_deviation(): relief within windows that the map does not
                                   // show
-    NoiseCorrelation noise_correlation{}; // of neighbouring pixels' noise, FocusProbes::noise_correlation()
+    NoiseCorrelation noise_correlation{}; // correlation of neighbouring pixels' noise, FocusProbes::noise_correlation()
 
     bool rivalled() const { return rivalled_share > 0.5; }
 };

@@ -32,7 +32,7 @@ struct DeviceReport {
     std::uint32_t subgroup_size = 0;
     std::uint64_t memory_bytes = 0; // the largest device-local heap
     std::uint64_t max_storage_buffer_bytes = 0;
-    std::uint64_t max_allocation_bytes = 0; // of one buffer; 0: the device has no Vulkan 1.2
+    std::uint64_t max_allocation_bytes = 0; // largest buffer; 0: the device has no Vulkan 1.2
     std::vector<std::string> lacking;
     bool preferred = false; // the device that is used by default
 };

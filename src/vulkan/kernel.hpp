@@ -74,7 +74,7 @@ class Commands {
     // The command buffer, for commands that have no function here.
     const vk::raii::CommandBuffer& handle() const { return buffers_.front(); }
 
-    // Both throw RunError if the device is lost. submit() may be called once, from any thread.
+    // submit() and wait() throw RunError if the device is lost. submit() may be called once, from any thread.
     void submit();
     void wait();
     void submit_and_wait() {

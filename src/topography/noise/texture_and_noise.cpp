@@ -28,7 +28,7 @@ struct TextureOfProbe {
     std::vector<Sums> sums{}; // by distance from the maximum
     double bend = 0;
     double variance = 0;
-    double noise_share = 0; // of the energy at the maximum
+    double noise_share = 0; // share of the energy at the maximum
     bool found = false;
 };
 

@@ -38,7 +38,7 @@ QuadricRow::QuadricRow(const Grid<double>& height, std::span<const double> weigh
 
 QuadricRow::Terms QuadricRow::factors_of(const std::array<std::array<double, powers>, powers>& moments) {
     // Cholesky's decomposition of the normal equations, whose right side is the first unit vector.
-    constexpr double least = 1e-6; // of a diagonal element: heights along a line determine no surface
+    constexpr double least = 1e-6; // least share of a diagonal element: heights along a line determine no surface
     std::array<Terms, terms> lower{};
     for (std::size_t i = 0; i < terms; ++i) {
         for (std::size_t j = 0; j <= i; ++j) {

@@ -20,7 +20,7 @@ double start_radius(const optics::TurnedInstrument& turned, const BackwardPlan& 
     const double holds_all = turned.optics.pupil_radius;
     const double share = turned.pupil_rim / holds_all;
     const double within = std::floor(plan.points * share * share);
-    constexpr double least_share = 0.85; // of the points: at 7 of 8 the variance falls, smaller shares were not tested
+    constexpr double least_share = 0.85; // share of the points: 7 of 8 lower the variance, fewer were not tested
     return within >= least_share * plan.points ? turned.pupil_rim * std::sqrt(plan.points / within) : holds_all;
 }
 

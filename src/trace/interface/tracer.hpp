@@ -35,7 +35,7 @@ struct TraceOptions {
     vulkan::OpenedDevice opened;     // the same device, if it is open or being opened
     bool nonsequential = false;      // elements are met in any order, and interfaces split light
     bool directed_scatter = false;   // forward, sequential: every bounce also aims at the pupil, and light has weights
-    std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
+    std::optional<bool> instrument_in_constants; // in the forward kernels; none: where it pays
     std::optional<bool> for_software;            // kernels in the form for software devices; none: as the device is
     bool illumination_polynomials = true;        // if the illumination is in constants:
                                                  // optics/instrument/train_polynomials.hpp

@@ -31,9 +31,9 @@ class WaveImage {
     int columns() const { return size_.columns; } // numbers in a row
     // The light of the pixels, in the units of the sorted light.
     Grid<double> apply(std::span<const std::uint64_t> light) const;
-    // The same light from cells that the calling thread fetches one after the other and does not keep: four times as
-    // many cells at a time as there are cores, and of each the rows of parts of pixels that a window of the field's
-    // tiles needs.
+    // Makes the light of the pixels from cells that the calling thread fetches one after the other and does not keep:
+    // four times as many cells at a time as there are cores, and of each the rows of parts of pixels that a window of
+    // the field's tiles needs.
     using RowsOfCell = std::function<std::vector<std::uint64_t>(int cell, int first_row, int rows)>;
     Grid<double> apply(const RowsOfCell& rows_of_cell) const;
 
