@@ -14,7 +14,7 @@ layout(set = 0, binding = BINDING_PARAMETERS, scalar) uniform Parameters {
 // clang-format on
 layout(set = 0, binding = BINDING_SPECTRUM, scalar) uniform Spectrum { SpectralBin spectrum[SPECTRUM_CAPACITY]; };
 
-layout(constant_id = CONSTANT_FEATURES) const uint scene_features = 0u; // FEATURE_*: what is absent is compiled out
+layout(constant_id = CONSTANT_FEATURES) const uint scene_features = 0u; // FEATURE_*: absent features are compiled out
 
 Surface surface_at(int index) { return surfaces[index]; }
 SpectralBin spectral_bin(int index) { return spectrum[index]; }

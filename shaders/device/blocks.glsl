@@ -78,7 +78,7 @@ struct TracedRay {
     int surface;
 };
 
-// probe_paths.comp: how and where one path ended.
+// probe_paths.comp: the end of one path.
 struct PathEnd {
     uint status;
     int surface;

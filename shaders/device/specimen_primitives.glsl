@@ -1,7 +1,7 @@
 // Functions common to the traversals of trees of primitives: triangles, analytic surfaces as procedural boxes (tiles),
 // and the repeated test of a ray that slips through. Each traversal itself defines
 //
-// Hit meet_triangles(real3 origin, real3 direction, RayInterval over)  the nearest one, from either side
+//     Hit meet_triangles(real3 origin, real3 direction, RayInterval over)  the nearest one, from either side
 //     Hit meet_tiles(SpecimenRay ray, real rounding)
 
 struct SurfaceTile {

@@ -6,7 +6,7 @@
 //   real image_value(int channel, int column, int row) const;
 //   real window_weight(int distance) const;                         distance 0 ... window_radius
 //   WindowSums window_source(int field, int column, int row) const; level and response of a field (window.glsl)
-//   WindowSums window_row(int field, int column, int row) const;    what window_along_row() gave there
+//   WindowSums window_row(int field, int column, int row) const;    result of window_along_row() at this pixel
 //   real curve_value(int image) const;
 //   real joint_value(int image) const;                              see CurveRecord (records.glsl)
 //   real alone_value(int image) const;

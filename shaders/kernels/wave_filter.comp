@@ -16,7 +16,7 @@ layout(constant_id = WAVES_CONSTANT_FILTERS) const uint filters = 1u;
 // The four nodes about a place of a cell's table, x from -steps to steps, y from 0, and their weights: between nodes
 // the table is bilinear.
 struct Nodes {
-    int corner;   // left and low, of the first cell
+    int corner;   // first node: left and low, of the first cell
     vec4 weights; // left and low, right and low, left and above, right and above
 };
 

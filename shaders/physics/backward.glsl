@@ -168,7 +168,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real collect(VKFV_SCENE_PARAMETER Instrument i
     return value;
 }
 
-// A candidate for a connection: a direction towards the source, and how densely such are drawn over solid angle.
+// A candidate for a connection: a direction towards the source, and the density of such directions per solid angle.
 struct Candidate {
     bool usable;
     real3 direction;

@@ -3,14 +3,14 @@
 //
 // A scene, handed to the functions that take one, has these members:
 //   Surface surface_at(int index) const;
-// EmissionCell emission_cell(uvec2 path) const;      only for forward paths
+//   EmissionCell emission_cell(uvec2 path) const;      only for forward paths
 //   uint features() const;                             FEATURE_* of its trains
 //   SpectralBin spectral_bin(int index) const;         only with FEATURE_SPECTRUM
 //   Hit specimen_hit(real3 origin, real3 direction) const;
 //   real pattern_point(Pattern pattern, int column, int row) const;   only of patterns with a grid
 //   LightField light_field() const;                    only with FEATURE_LIGHT_FIELD
 //   Element element_at(int index) const;              only for non-sequential paths
-//   ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) const;   likewise
+//   ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) const;   only for non-sequential paths
 //   Facet facet_at(int index) const;                  only with FEATURE_FACETS
 //   real lattice_at(int column, int row) const;      only for analytic specimens with a lattice
 //   real material_number(int index) const;            only of materials that have numbers

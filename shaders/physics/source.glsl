@@ -91,8 +91,8 @@ VKFV_FUNCTION Ray emit_from_rectangle(real half_width, real half_height, real em
     return ray;
 }
 
-// A ring light about the z axis that shines on the origin from z < 0. Its band lies on a cone: at w across the band,
-// from the ring's inside, its radius is r - w sin(elevation), and so is its share of the area.
+// A point of a ring light about the z axis that shines on the origin from z < 0. The ring's band lies on a cone: at w
+// across the band, from the ring's inside, its radius is r - w sin(elevation), and so is its share of the area.
 struct RingPoint {
     real3 position;
     real3 normal; // unit, towards the lit side

@@ -214,7 +214,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER Specime
         return result;
     }
 
-    // Newton's method, held between the last point before the surface and the first behind it by bisection.
+    // Newton's method, held by bisection between the last point before the surface and the first behind it.
     real lower = previous;
     real upper = s;
     for (int step = 0; step < MARCH_POLISH_STEPS && abs(gap) > rounding && upper > lower; ++step) {

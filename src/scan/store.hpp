@@ -1,11 +1,11 @@
 // The folder of one stack, from the first image to the last, over as many runs as it takes.
 //
-//   stack.toml              the configuration, and in comments the identity: what the images depend on
+//   stack.toml              the configuration, and in comments the identity: all that the images depend on
 //   .stack.toml             a copy of it, for repair.hpp
 //   images/z_0000.tif ...   one exposure each, float32 W per pixel, or a camera's grey values; the file's first row has
 //                           the highest y
 //   partial_0007            an exposure that was ended before its time, if it is a long one: checkpoint_files.hpp
-//   ledger.csv              a row an image: where its light went
+//   ledger.csv              a row an image: the fates of its light
 //   timings.csv             (timings_2_of_8.csv of a shard) a row an exposure, the device's work and an evaluation, in
 //                           the order of their making; no part of the result, since a clock is in it: all others hold
 //                           the same bytes however often a run was interrupted

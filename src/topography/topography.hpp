@@ -163,7 +163,7 @@ class StackEvaluator {
                           const std::function<double(double)>& height_at) const;
     StackFigures judge_stack() const;
     struct PointNoise {
-        double single = 0;       // standard deviation of a single image's measure
+        double single = 0;       // standard deviation of the measure of a single image
         double averaging = 1;    // factor on it that both averages leave
         double window_share = 1; // pixels of the window that lie in the image, over those of a whole window
     };

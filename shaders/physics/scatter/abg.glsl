@@ -1,9 +1,9 @@
-// The ABg model of scatter by polished surfaces, as programs of optical design know it (R. Pfisterer, "Approximated
+// The ABg model of scatter by polished surfaces, used by programs of optical design (R. Pfisterer, "Approximated
 // scatter models for stray light analysis", Opt. Photon. News 22 (10) (2011) 16):
 //   f = A / (B + d^g),
-// d the distance of the outgoing direction's cosines from the mirror direction's. A makes the integral of f cos(theta)
-// 1 at normal incidence, so that the lobe's weight is the total integrated scatter. Reciprocal; at other incidences the
-// part of the lobe that lies beyond the horizon is absorbed. What is not scattered is a lobe of mirror.
+// where d is the distance of the outgoing direction's cosines from the mirror direction's. A makes the integral of f
+// cos(theta) 1 at normal incidence, so that the lobe's weight is the total integrated scatter. The model is reciprocal;
+// at other incidences the part of the lobe beyond the horizon is absorbed. The unscattered light is a lobe of mirror.
 // parameter: abg_b, 1e-12, 1, 0.001, constant B: the lobe rolls off at the distance of direction cosines B^(1/g)
 // parameter: abg_g, 0.1, 8, 1.5, exponent g: the lobe falls with this power of that distance
 // absorbs
@@ -13,7 +13,7 @@
 VKFV_FUNCTION real abg_power(real abg_g, real distance) { return exp(abg_g * log(max(distance, real(1e-30)))); }
 
 // Proposals have the density 1 / B up to the roll-off and d^-g from there to 1, which is nowhere more than twice the
-// wanted one. y = -log(d), and y_0 is that of the roll-off.
+// wanted density. y = -log(d), and y_0 is its value at the roll-off.
 struct AbgProposal {
     real distance;
     real acceptance;

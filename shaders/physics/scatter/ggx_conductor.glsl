@@ -1,6 +1,6 @@
-// The facets of ggx, of a metal: each reflects as Fresnel's equations say for unpolarised light of an absorbing medium
-// (fresnel.glsl), at the angle that the light meets it by. Reciprocal. What other facets would catch is absorbed, as it
-// is by ggx.
+// The facets of ggx, of a metal: each reflects by Fresnel's equations for unpolarised light of an absorbing medium
+// (fresnel.glsl), at its angle of incidence. The model is reciprocal. Light that other facets would catch is absorbed,
+// as it is by ggx.
 // parameter: refractive_index, 0.01, 20, 0.22, real part n of the index, here that of gold at 0.59 um
 // parameter: extinction_coefficient, 0, 20, 3.05, imaginary part k of the index, here that of gold at 0.59 um
 // parameter: alpha, 0.001, 1, 0.3, roughness: half of the surface's projected area is steeper than this slope

@@ -1,11 +1,11 @@
-// The facets of ggx, and what they lose by reflecting each ray once: that light is scattered between them until it gets
-// away. With E(i) the share that ggx keeps of light from i (Ggx tests; src/specimen/scatter_tables.cpp integrates it),
+// The facets of ggx with multiple scatter: light that ggx loses by reflecting each ray once is scattered between facets
+// until it escapes. With E(i) the share that ggx keeps of light from i (Ggx tests; src/specimen/scatter_tables.cpp
+// integrates it),
 //   f = f_ggx + (1 - E(i)) (1 - E(o)) / (pi (1 - E_mean)),   E_mean = 2 times the integral of E cos over the cosine,
 // the compensation of C. Kelemen and L. Szirmay-Kalos (Eurographics 2001, short presentations) as C. Kulla and A. Conty
-// (SIGGRAPH 2017 course "Physically based shading") use it, for facets that reflect everything: reciprocal, and all
-// light is kept at any incidence. Directions of light that was scattered more
-// than once are those of this form, not those of a walk from facet to facet (E. Heitz et al., ACM Trans. Graph. 35
-// (2016) 58), which has no closed form.
+// (SIGGRAPH 2017 course "Physically based shading") use it, for facets that reflect everything: it is reciprocal, and
+// all light is kept at any incidence. Directions of light that was scattered more than once are those of this form, not
+// those of a walk from facet to facet (E. Heitz et al., ACM Trans. Graph. 35 (2016) 58), which has no closed form.
 // parameter: alpha, 0.001, 1, 0.3, roughness: half of the surface's projected area is steeper than this slope
 // table
 // drawn_by_table

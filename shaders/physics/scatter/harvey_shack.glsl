@@ -1,9 +1,9 @@
-// Scatter of a polished surface as J. E. Harvey, "Light-scattering characteristics of optical surfaces" (thesis,
-// University of Arizona, 1976) found it, the same at any incidence as a function of direction cosines:
+// Scatter of a polished surface as found by J. E. Harvey, "Light-scattering characteristics of optical surfaces"
+// (thesis, University of Arizona, 1976), the same at any incidence as a function of direction cosines:
 //   f = f_0 (1 + (d / shoulder)^2)^(slope / 2),
-// d the distance of the outgoing direction's cosines from the mirror direction's. f_0 makes the integral of f
-// cos(theta) 1 at normal incidence, so that the lobe's weight is the total integrated scatter. Reciprocal; at other
-// incidences the part of the lobe that lies beyond the horizon is absorbed. What is not scattered is a lobe of mirror.
+// where d is the distance of the outgoing direction's cosines from the mirror direction's. f_0 makes the integral of f
+// cos(theta) 1 at normal incidence, so that the lobe's weight is the total integrated scatter. The model is reciprocal;
+// at other incidences the part of the lobe beyond the horizon is absorbed. The unscattered light is a lobe of mirror.
 // parameter: shoulder, 0.0001, 1, 0.01, distance of direction cosines at which the lobe rolls off
 // parameter: slope, -8, -0.1, -1.5, slope of the lobe beyond the shoulder, both axes logarithmic
 // lossy

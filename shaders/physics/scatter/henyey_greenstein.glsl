@@ -1,10 +1,10 @@
 // Henyey-Greenstein scatter adapted to a surface. With alpha the angle between the outgoing direction and
 // the mirror direction, the outgoing direction has the density
 //   p(alpha; g) cos(theta_o) / N(theta_i, g)   over the hemisphere above the surface,
-// p the function of L. G. Henyey and J. L. Greenstein, Astrophys. J. 93 (1941) 70, eq. 2, and N its integral. g = 0 is
-// Lambertian, g = 1 the mirror, and no light is lost at any angle. Hence it is not reciprocal: p is symmetric in both
-// directions, and N belongs to the incidence alone. At g = 0.8, from 60 degrees to the normal is 1.87 times as bright
-// as from the normal to 60 degrees; ggx is reciprocal.
+// where p is the function of L. G. Henyey and J. L. Greenstein, Astrophys. J. 93 (1941) 70, eq. 2, and N its integral.
+// g = 0 is Lambertian, g = 1 the mirror, and no light is lost at any angle. Hence it is not reciprocal: p is symmetric
+// in both directions, but N belongs to the incidence alone. At g = 0.8, light from 60 degrees into the normal is 1.87
+// times as bright as light from the normal into 60 degrees; ggx is reciprocal.
 // Sharper backward lobes than g = -0.9 lie all but wholly below the surface: scatter() would run out of tries.
 // parameter: g, -0.9, 1, 0, asymmetry: 0 is Lambertian and 1 the mirror
 // table

@@ -1,7 +1,7 @@
-// A measured bsdf, isotropic: by the angle of incidence, the angle of scatter, and the azimuth between the outgoing
+// A measured isotropic BSDF by the angle of incidence, the angle of scatter, and the azimuth between the outgoing
 // direction and the mirror direction's (0 to 180 degrees, the same on either side). The host reads, checks and prepares
-// it in src/specimen/tabulated_bsdf.cpp. Linear between its angles; its integral of f cos(theta) over the hemisphere is
-// the share that is scattered, and the rest is absorbed. As reciprocal as the table is.
+// it in src/specimen/tabulated_bsdf.cpp. It is linear between its angles; its integral of f cos(theta) over the
+// hemisphere is the share that is scattered, and the rest is absorbed. It is as reciprocal as its table.
 // absorbs
 // table
 // drawn_by_table

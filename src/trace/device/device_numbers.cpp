@@ -7,7 +7,7 @@ namespace vkfv::trace {
 
 namespace {
 
-constexpr std::size_t most_staging_bytes = std::size_t{64} << 20; // light of waves takes gigabytes
+constexpr std::size_t most_staging_bytes = std::size_t{64} << 20; // sorted light takes gigabytes
 
 } // namespace
 
