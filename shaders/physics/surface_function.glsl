@@ -149,12 +149,12 @@ const int MARCH_COARSE_STEPS = 1024;
 // Halvings from a coarse step to the last bit of a double: 52 - 10, and as many Newton steps, which may fail.
 const int MARCH_POLISH_STEPS = 84;
 
-// The nearest crossing of the continuous surface with t_min <= t <= t_max, within the footprint. direction: unit.
-// Safe steps: along the ray the gap z - f(x, y) shrinks by at most lipschitz |d_xy| - d_z a unit length (J. C. Hart,
-// "Sphere tracing", The Visual Computer 12 (1996), for the vertical distance instead of the Euclidean one).
-// A ray that starts below the surface by more than rounding is met at once, at t_min: scattered light cannot leak. One
-// that comes in through a side of the footprint below the surface meets it from below. position.z is the surface's
-// height, so that what starts there starts on the surface; the normal is on the side of +z.
+// The nearest crossing of the continuous surface with t_min <= t <= t_max, within the footprint. direction: unit. Safe
+// steps: along the ray the gap z - f(x, y) shrinks by at most lipschitz |d_xy| - d_z a unit length (J. C. Hart, "Sphere
+// tracing", The Visual Computer 12 (1996), for the vertical distance instead of the Euclidean one). A ray that starts
+// below the surface by more than rounding is met at once, at t_min: scattered light cannot leak. One that comes in
+// through a side of the footprint below the surface meets it from below. position.z is the surface's height, so that a
+// ray that starts there starts on the surface; the normal is on the side of +z.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER SpecimenRecord specimen, real3 origin,
                                                     real3 direction, real t_min, real t_max) {
     real lateral = sqrt(direction.x * direction.x + direction.y * direction.y);

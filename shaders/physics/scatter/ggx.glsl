@@ -4,7 +4,7 @@
 //   f = D(m) / (4 cos_i cos_o (1 + L_i + L_o)),   L = (sqrt(1 + alpha^2 tan^2(theta)) - 1) / 2,
 //   D = alpha^2 / (pi cos^4(theta_m) (alpha^2 + tan^2(theta_m))^2).
 // The model is reciprocal: f(i, o) = f(o, i). Light that other facets would catch is absorbed, as it is scattered only
-// once: at normal incidence 1 % with alpha = 0.1, 12 % with 0.3, 31 % with 0.5 and 69 % with 1;
+// once. At normal incidence this is 1 % with alpha = 0.1, 12 % with 0.3, 31 % with 0.5 and 69 % with 1;
 // ggx_multiple_scatter.glsl keeps it.
 // parameter: alpha, 0.001, 1, 0.3, roughness: half of the surface's projected area is steeper than this slope
 // lossy
