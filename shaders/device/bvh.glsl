@@ -19,9 +19,8 @@ struct BvhWalk {
     real3 slowness; // inverse of the direction, finite
     real3 margin;   // by axis, as a distance along the ray
     real start;
-    uint forward;     // bit a: the ray does not go towards - along axis a
-    uvec2 nodes;      // index of the first sibling; bits 24 to 31: siblings to visit, nearest highest; 0 to 7: slots
-                      // that hold nodes
+    uint forward; // bit a: the ray does not go towards - along axis a
+    uvec2 nodes;  // first sibling's index; bits 24 to 31: siblings to visit, nearest highest; 0 to 7: slots of nodes
     uvec2 primitives; // index of a node's first primitive; bits 0 to 23: primitives still to be handed out
     int depth;        // entries of the stack, each as `nodes`
     uint primitive;   // the primitive handed out, in the order of the tree

@@ -81,8 +81,7 @@ const uint CONSTANT_POLYNOMIAL_SHIFT = 14u;
 const uint CONSTANT_POLYNOMIAL_PER_SINE = 15u;
 const uint CONSTANT_POLYNOMIAL_PLANE = 16u;
 const uint CONSTANT_POLYNOMIALS = 1200u;    // from here to 1839; glslang takes numbers below 2048
-const uint KNOWN_POLYNOMIAL_CAPACITY = 64u; // numbers reserved for each: its terms, and from KNOWN_DEGREE on degree and
-                                            // edge
+const uint KNOWN_POLYNOMIAL_CAPACITY = 64u; // numbers reserved for each: terms, degree and edge
 const uint KNOWN_DEGREE = 56u;
 const uint KNOWN_EDGE_SURFACE = 57u;
 const uint KNOWN_EDGE_INSIDE_BELOW = 58u;

@@ -2,8 +2,7 @@
 // away, and the rest are immediate operands. Rare fields (placement, dispersion, layers) stay in the uniform block.
 // DeviceScene::specialised_constants gives the values of at most KNOWN_SURFACES surfaces.
 layout(constant_id = CONSTANT_KNOWN_FIRST) const int known_first = 0; // the first surface that is known
-layout(constant_id = CONSTANT_KNOWN_COUNT) const int known_count = 0; // the surfaces known_first ... known_first +
-                                                                      // known_count - 1 are known
+layout(constant_id = CONSTANT_KNOWN_COUNT) const int known_count = 0; // number of surfaces known from there on
 
 #define VKFV_DECLARE_CONSTANT(id, type, name) layout(constant_id = id) const type known_##name = type(0);
 #define VKFV_KNOW(id, type, name) known.name = known_##name;

@@ -3,8 +3,7 @@
 // serves as GLSL for kernels/estimate_light.comp and as C++ (estimate.hpp).
 
 const uint ESTIMATE_COUNTS = 0u;         // a pixel has one number: its count of rays
-const uint ESTIMATE_WEIGHTS = 1u;        // a pixel has two numbers: sum of the rays' weights, sum of the weights'
-                                         // squares
+const uint ESTIMATE_WEIGHTS = 1u;        // a pixel has two numbers: sums of its rays' weights and of their squares
 const uint ESTIMATE_RANDOMISATIONS = 2u; // a pixel has one number in each randomisation: the sum over its paths
 
 // The rule that converts numbers to flux.

@@ -19,8 +19,7 @@ VKFV_FUNCTION FacetMeeting meet_facet(RayFrame frame, Facet facet) {
     real total = u + v + w;
     FacetMeeting meeting;
     meeting.found =
-        (min(u, min(v, w)) >= real(0.0) || max(u, max(v, w)) <= real(0.0)) && total != real(0.0); // else the ray is
-                                                                                                  // edge-on
+        (min(u, min(v, w)) >= real(0.0) || max(u, max(v, w)) <= real(0.0)) && total != real(0.0); // false: edge-on
     meeting.leaving = total < real(0.0); // decided by the corners, as a normal may round to the other side
     real inverse = meeting.found ? real(1.0) / total : real(0.0);
     meeting.distance = (u * a.z + v * b.z + w * c.z) * inverse;

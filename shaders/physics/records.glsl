@@ -17,8 +17,7 @@ const uint PATH_INTERACTION_LIMIT = 8u; // non-sequential: met more surfaces tha
 const uint PATH_VIGNETTED = 9u;         // stopped by the edge of a surface (a surface index belongs to it)
 const uint PATH_MISSED_SURFACE = 10u;   // a surface of a train does not meet the ray (a surface index belongs to it)
 const uint PATH_TOTAL_REFLECTION = 11u; // totally reflected at a surface (a surface index belongs to it)
-const uint PATH_INTERFACE_LOSS = 12u;   // reflected at a refracting surface, or absorbed by a mirror (a surface index
-                                        // belongs to it)
+const uint PATH_INTERFACE_LOSS = 12u;   // reflected by an interface, absorbed by a mirror (with a surface index)
 const int PATH_STATUS_COUNT = 13;
 const int SURFACE_STATUS_COUNT = 4; // statuses from PATH_VIGNETTED on
 
@@ -29,8 +28,7 @@ const uint SURFACE_LAYER = 8u;        // reflects by Fresnel's equations through
 const uint SURFACE_MIRROR = 16u;      // plane; a train is unfolded at it
 const uint SURFACE_IDEAL_LENS = 32u;  // an ideal lens of `power` instead of an interface
 const uint SURFACE_LIGHT_FIELD = 64u; // lets through the share that the instrument's LightField gives
-const uint SURFACE_TURNED = 128u;     // with SURFACE_LIGHT_FIELD: its frame is the light field's turned by half a turn
-                                      // about x
+const uint SURFACE_TURNED = 128u;     // its frame is the light field's turned by half a turn about x
 
 // Features that some scenes have and most have not: kernels are compiled without the absent ones.
 const uint FEATURE_PLACEMENT = 1u; // surfaces decentred or tilted against each other
@@ -120,8 +118,7 @@ struct Ray {
 struct Light {
     real spectral;    // x = (1/lambda^2 - centre) / half-width of the spectrum in 1/lambda^2; in [-1, 1]
     real wave_number; // 1/um, 1/lambda
-    real survival;    // in [0, 1): the light is lost where the product of the surfaces' transmittances is less than
-                      // this
+    real survival;    // in [0, 1): light is lost where the product of the transmittances is below this
 };
 
 // A bin of a spectrum, whose density changes linearly from (1 - tilt) to (1 + tilt) times its mean.

@@ -28,10 +28,7 @@ class ElementSections {
 
     const std::vector<optics::Element>& elements() const { return elements_; }
     double radius(std::size_t i) const { return radii_[i]; }
-    double back(std::size_t i) const {
-        return backs_[i];
-    }                                                         // for a mirror: 1 where light comes towards its z, else
-                                                              // -1
+    double back(std::size_t i) const { return backs_[i]; }    // of a mirror: 1 if light comes towards its z, else -1
     double extent() const { return extent_; }                 // size of the instrument, to which housings are relative
     double slab_thickness() const { return 0.012 * extent_; } // thickness of the specimen's slab
 

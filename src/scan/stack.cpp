@@ -69,8 +69,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         of_shard.push_back(image);
         if (store.stored(image)) {
             ++summary.kept;
-            checkpoints->drop(static_cast<std::uint32_t>(image)); // remains of a run that was killed between storing
-                                                                  // and dropping
+            checkpoints->drop(static_cast<std::uint32_t>(image)); // left by a run that was killed before dropping it
         } else {
             to_trace.push_back(image);
         }

@@ -82,8 +82,7 @@ class StageMotion {
   private:
     void add_spectrum();
     double time_of(std::uint32_t image) const;
-    double settled(double nominal, std::uint32_t image) const; // position that the scale should read, with jitter and
-                                                               // backlash
+    double settled(double nominal, std::uint32_t image) const; // nominal position with jitter and backlash
     double normal(std::uint32_t image, std::uint32_t purpose) const;
     double uniform(std::uint32_t image, std::uint32_t purpose) const;
 

@@ -663,8 +663,7 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
         means.curve = all_shares(axial_shares, {1}, images_);
     }
     std::vector<double> shares(probes_.size(), std::numeric_limits<double>::quiet_NaN());
-    std::vector<std::optional<PlaceOfImages>> wide(probes_.size()); // for texture that is strong in a neighbouring
-                                                                    // image too
+    std::vector<std::optional<PlaceOfImages>> wide(probes_.size()); // where a neighbouring image has strong texture too
     parallel_items(static_cast<int>(probes_.size()), [&](int k) {
         const Probe& probe = probes_[static_cast<std::size_t>(k)];
         const std::vector<double>& singles = probe.singles;

@@ -14,8 +14,7 @@ enum class PeakMethod {
     gaussian = focus::f64::PEAK_GAUSSIAN,                   // through the three values around the maximum
     parabola = focus::f64::PEAK_PARABOLA,                   // through the three values around the maximum
     gaussian_fit = focus::f64::PEAK_GAUSSIAN_FIT,           // least squares over the range
-    polynomial_fit = focus::f64::PEAK_POLYNOMIAL_FIT,       // least squares over the range, of degree 2: a higher one
-                                                            // follows the noise
+    polynomial_fit = focus::f64::PEAK_POLYNOMIAL_FIT,       // least squares, degree 2: a higher one follows the noise
     centre_of_gravity = focus::f64::PEAK_CENTRE_OF_GRAVITY, // over the range
 };
 

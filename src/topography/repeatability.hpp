@@ -19,8 +19,7 @@ struct SystematicAndRandom {
     // fewer than three.
     double systematic_error = 0;
     double random_error = 0;
-    double points = 0;                     // number of points that two or more repetitions measured; others do not
-                                           // count
+    double points = 0;                     // number of points with two or more repetitions; others do not count
     surface::HeightMap mean_deviation;     // mm; NaN at the points that do not count
     surface::HeightMap standard_deviation; // mm, of one repetition; NaN at the points that do not count
 };

@@ -92,16 +92,15 @@ enum class PointState : std::uint16_t {
 
 // Figures of a stack as a whole.
 struct StackFigures {
-    double smoothing_steps = 0;   // the average that was used
-    double curve_width_steps = 0; // standard deviation of its focus curves, FocusProbes::curve_width()
-    ChanceLimit limit;            // limit that a measured point exceeds
-    Evidence whole;               // mean of single images' curves at some places
-    double rivalled_share = 0;    // share of wide windows' curves that have a second maximum above most_rival
-    PersistenceLimit persistence; // further limit that a measured point exceeds
-    ChanceLimit limit_of_whole;   // limit that `whole` exceeds if anything is measured; none for few_images
-    double image_noise = 0;       // standard deviation of a pixel over its brightness, at the mean brightness
-    double hidden_relief = 0;     // mm, HiddenLevels::mean_deviation(): relief within windows that the map does not
-                                  // show
+    double smoothing_steps = 0;           // the average that was used
+    double curve_width_steps = 0;         // standard deviation of its focus curves, FocusProbes::curve_width()
+    ChanceLimit limit;                    // limit that a measured point exceeds
+    Evidence whole;                       // mean of single images' curves at some places
+    double rivalled_share = 0;            // share of wide windows' curves that have a second maximum above most_rival
+    PersistenceLimit persistence;         // further limit that a measured point exceeds
+    ChanceLimit limit_of_whole;           // limit that `whole` exceeds if anything is measured; none for few_images
+    double image_noise = 0;               // standard deviation of a pixel over its brightness, at the mean brightness
+    double hidden_relief = 0;             // mm, HiddenLevels::mean_deviation(): relief hidden within windows
     NoiseCorrelation noise_correlation{}; // correlation of neighbouring pixels' noise, FocusProbes::noise_correlation()
 
     bool rivalled() const { return rivalled_share > 0.5; }

@@ -26,8 +26,7 @@ struct DeviceReport {
     std::string type; // "discrete GPU", "integrated GPU", "CPU", ...
     std::string api_version;
     bool ray_query = false;    // not needed: the trace has other traversals
-    bool ray_pipeline = false; // VK_KHR_ray_tracing_pipeline; not needed: structures can be probed by it where there is
-                               // no ray query
+    bool ray_pipeline = false; // VK_KHR_ray_tracing_pipeline; not needed: it can probe structures without ray query
     bool doubles = false;      // in shaders; not needed: the host has doubles
     std::uint32_t subgroup_size = 0;
     std::uint64_t memory_bytes = 0; // the largest device-local heap
@@ -44,8 +43,7 @@ inline bool is_software(const DeviceReport& report) {
 
 struct DeviceOptions {
     std::string selector;       // empty: the best; else an index or a part of the name, or a list for choose_devices()
-    bool ray_pipelines = false; // also opens it for RayPipeline; throws DeviceError where the device has no such
-                                // pipelines
+    bool ray_pipelines = false; // also opens it for RayPipeline; DeviceError if it has no such pipelines
 };
 
 // The index into `reports` of the device to use: the selector's, else discrete before integrated before virtual before

@@ -52,8 +52,7 @@ void find_noise(const WindowResponses& responses, const std::vector<std::vector<
         result.noise_energy += responses.energy(noise[k]) / static_cast<double>(noise.size());
         const auto slopes = responses.slopes(noise[k]);
         for (std::size_t partner = 1; partner <= partners / 2; ++partner) {
-            constexpr std::size_t apart = 7 * patches_a_probe; // skips patches of the same probe, which follow each
-                                                               // other
+            constexpr std::size_t apart = 7 * patches_a_probe; // skips the consecutive patches of one probe
             squares += std::pow(responses.product(slopes, noise[(k + apart * partner + 1) % noise.size()]), 2);
             pairs += 1;
         }

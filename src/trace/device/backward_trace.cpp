@@ -163,8 +163,7 @@ class BackwardTracer final : public DeviceExposures {
     optics::Instrument turned_;
     BackwardPlan plan_;
     DeviceScene scene_;
-    mutable std::vector<ExposureMemory> memories_; // prepare() writes the memory of its slot, which its caller alone
-                                                   // uses
+    mutable std::vector<ExposureMemory> memories_; // prepare() writes its slot's memory, which its caller alone uses
     BackwardTrace trace_;
     BackwardAccounts accounts_;
     DeviceEstimate estimate_;

@@ -35,8 +35,7 @@ class BackwardTrace {
     const DeviceScene& scene_;
     std::uint32_t pixels_;
     std::size_t stride_;
-    std::uint32_t points_per_chunk_; // chunk of one invocation; depends on the plan alone, as it decides which floats
-                                     // are added up
+    std::uint32_t points_per_chunk_; // depends on the plan alone, as it decides which floats are added up
     std::uint64_t chunks_;
     std::uint32_t most_chunks_at_a_time_;
     vulkan::Buffer sums_;

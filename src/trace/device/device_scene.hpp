@@ -49,8 +49,7 @@ struct ExposureMemory {
 // SPIR-V of one kernel, for each traversal.
 struct KernelVariants {
     std::span<const std::uint32_t> quadtree;
-    std::span<const std::uint32_t> software; // the quadtree in the form that software devices run faster
-                                             // (VKFV_LEAVE_IF)
+    std::span<const std::uint32_t> software; // the quadtree's form that is faster on software devices (VKFV_LEAVE_IF)
     std::span<const std::uint32_t> ray_query;
     std::span<const std::uint32_t> bvh;
 };

@@ -51,8 +51,7 @@ class DeviceSpecimen {
     physics::f32::SpecimenRecord record_{};
     bool has_reflectance_map_ = false;
     bool has_spectral_material_ = false;
-    bool has_falling_cells_ = false;                  // a mesh that is a height field has cells split the other way:
-                                                      // mesh_lattice.hpp
+    bool has_falling_cells_ = false;                  // a mesh's cells are split the other way: mesh_lattice.hpp
     std::map<std::uint32_t, vulkan::Buffer> buffers_; // by binding number
     std::unique_ptr<vulkan::AccelerationStructure> structure_;
     std::uint32_t elements_root_ = 0;

@@ -70,8 +70,7 @@ class DeviceTracer final : public DeviceExposures {
     optics::Instrument instrument_;
     std::uint64_t rays_;
     DeviceScene scene_;
-    mutable std::vector<ExposureMemory> memories_; // prepare() writes the memory of its slot, which its caller alone
-                                                   // uses
+    mutable std::vector<ExposureMemory> memories_; // prepare() writes its slot's memory, which its caller alone uses
     std::unique_ptr<PathTrace> trace_;
     DeviceEstimate estimate_;
     DeviceNumbers numbers_;

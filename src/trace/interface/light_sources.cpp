@@ -44,8 +44,7 @@ std::vector<std::uint64_t> rays_of_sources(std::uint64_t rays, std::span<const d
 std::uint64_t launched_rays(const TraceOptions& options, const optics::InstrumentDescription& instrument) {
     const std::vector<double> equal(instrument.sources().size(), 1.0);
     std::uint64_t all = 0;
-    for (const std::uint64_t rays : rays_of_sources(options.rays, equal)) { // for forward paths the sum is the same for
-                                                                            // any shares
+    for (const std::uint64_t rays : rays_of_sources(options.rays, equal)) { // forward any shares give this sum
         all += options.estimator == Estimator::backward ? backward_rays(rays, instrument.detector_pixels) : rays;
     }
     return all;

@@ -37,8 +37,7 @@ class WaveImage::Window {
     // their extended images that are even or odd along rows (x) and columns (y).
     enum Part : std::size_t { even, odd_along, odd_across, odd };
     using Parts = std::array<Grid<double>, 4>;
-    using Rows = std::array<std::vector<std::uint64_t>, 4>; // rows of the window for each of the four cells; over the
-                                                            // whole image
+    using Rows = std::array<std::vector<std::uint64_t>, 4>; // window's rows of the four cells, over the whole image
 
     // image: its size in parts of pixels.
     Window(const optics::PupilFilter& filter, const WaveWindow& window, ImageSize image)

@@ -11,8 +11,7 @@ namespace vkfv::trace {
 // A height field of which each cell is two triangles, split either way.
 struct MeshLattice {
     specimen::HeightField field;
-    std::vector<bool> falling; // by cell, row by row; true: split from (i+1, j) to (i, j+1), false: from (i, j) to
-                               // (i+1, j+1)
+    std::vector<bool> falling; // by cell: split from (i+1, j) to (i, j+1), not from (i, j) to (i+1, j+1)
 };
 
 // The mesh as a lattice, if it is one: its points lie within lattice_tolerance of a regular grid over x and y, one
