@@ -1,4 +1,5 @@
-// The parts of --bench, described in bench.hpp. All except validation, stages and hits need the rays of a run.
+// The parts of --bench, described in bench.hpp. All except validation, stages, hits and pipeline need the rays of a
+// run.
 #pragma once
 
 #include "bench/bench_scene.hpp"

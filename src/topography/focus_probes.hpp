@@ -125,7 +125,8 @@ class FocusProbes {
     void measure_by(FocusMeasure measure);
 
     // Chooses the options that are open. The probes use the options' measure, or where_noise_is_low, which is replaced
-    // by where_noise_counts unless noise has next to nothing of its energy.
+    // by where_noise_counts unless noise has next to nothing of its energy, and by where_little_is_averaged if there is
+    // no average along z.
     void settle(TopographyOptions& options);
 
   private:
@@ -227,7 +228,8 @@ class FocusProbes {
 };
 
 // The standard deviation of the average along z, in images, for focus curves of this standard deviation in images:
-// most_smoothing_of_width times it, at most a tenth of the scan and at most most_smoothing_steps.
+// most_smoothing_of_width times it, at most a tenth of the scan and at most most_smoothing_steps; 0 if this is below
+// least_smoothing.
 double suitable_smoothing(double curve_width, int images);
 
 } // namespace vkfv::topography
