@@ -1,4 +1,4 @@
-// What every kernel of the trace begins with: the physics, what it shares with the host, and what it is bound to.
+// Every kernel of the trace includes this file first: the physics, the records shared with the host, and the bindings.
 #extension GL_EXT_scalar_block_layout : require
 #include "physics/lang.glsl"
 #include "device/numbers.glsl"
@@ -14,14 +14,14 @@ layout(set = 0, binding = BINDING_PARAMETERS, scalar) uniform Parameters {
 // clang-format on
 layout(set = 0, binding = BINDING_SPECTRUM, scalar) uniform Spectrum { SpectralBin spectrum[SPECTRUM_CAPACITY]; };
 
-layout(constant_id = CONSTANT_FEATURES) const uint scene_features = 0u; // FEATURE_*: what is absent is compiled out
+layout(constant_id = CONSTANT_FEATURES) const uint scene_features = 0u; // FEATURE_*: absent features are compiled out
 
 Surface surface_at(int index) { return surfaces[index]; }
 SpectralBin spectral_bin(int index) { return spectrum[index]; }
 LightField light_field() { return instrument.light_field; }
 uint features() { return scene_features; }
 
-// Both with what the kernel knows as constants.
+// Instrument and specimen with those fields replaced that a specialised kernel knows as constants.
 Instrument known_instrument() {
     Instrument known = instrument;
 #ifdef VKFV_SPECIALISED

@@ -1,5 +1,5 @@
-// What else host and kernels of the trace share, in scalar layout: push constants, the heads of buffers, and what the
-// kernels give and take that are no part of the trace.
+// Records that host and kernels of the trace share in scalar layout besides physics/records.glsl: push constants, heads
+// of buffers, and inputs and outputs of the probes.
 
 // The uniform block of one image.
 // clang-format off
@@ -14,16 +14,16 @@
     FIELD(real, emission_cells_per_path)
 // clang-format on
 
-// Pushed: some of an image's paths.
+// Push constants: a range of an image's paths.
 struct Batch {
-    uvec2 first_path; // low and high word
+    uvec2 first_path; // low and high word of the path's number
     uint count;
 };
 
-// Pushed: the same of non-sequential paths.
+// Push constants: a range of an image's non-sequential paths.
 struct NonsequentialBatch {
     Batch paths;
-    uint elements_root; // of their tree of boxes
+    uint elements_root; // root of the elements' tree of boxes, a node index
     SourceFrame source_frame;
 };
 
@@ -34,23 +34,25 @@ struct BackwardBlock {
     Lattice lattice;
 };
 
-// Pushed: chunks of the pixels' lattices, those of one number after another, each in the order of the pixels.
+// Push constants: chunks of the pixels' lattices. All pixels' chunks of one number stand in the order of the pixels,
+// then those of the next number.
 struct BackwardBatch {
     uint first_chunk;
-    uint first_pixel; // whose first_chunk is the first
-    uint chunks;      // pixels and numbers together
+    uint first_pixel; // pixel with which the range begins, in its chunk first_chunk
+    uint chunks;      // in the range, over pixels and chunk numbers
     uint chunk_points;
     uint randomisation;
 };
 #endif
 
-// Of a height field's or an analytic surface's ceilings, which follow: specimen_quadtree.glsl.
+// Head of the buffer of ceilings of a height field or an analytic surface; the ceilings follow it
+// (specimen_quadtree.glsl).
 struct CeilingsHeader {
     int cells_x; // cells with a surface
     int cells_y;
     real per_x; // cells/mm
     real per_y;
-    real steepest;    // the surface's slope is nowhere larger
+    real steepest;    // upper bound of the slope of the surface
     int fine_level;   // its blocks come first, row-major
     int fine_columns; // blocks
     int coarse_level;
@@ -58,15 +60,15 @@ struct CeilingsHeader {
     int coarse_first; // index of the coarse level's first ceiling
 };
 
-// trace_rays.comp: given rays through one of the trains and on to a plane behind it.
+// trace_rays.comp: passage of given rays through one of the trains to a plane behind it.
 struct TrainPassage {
-    uint count; // rays
+    uint count; // number of rays
     uint apertures;
     uint form; // SHORT_TRAIN_*, with apertures; 0: trace_train()
     int first_surface;
     int surfaces;
     real index;
-    real plane; // mm, from the last vertex
+    real plane; // mm, z of the plane from the last vertex
 };
 struct TracedRay {
     real3 position; // on the plane, z unused
@@ -76,27 +78,28 @@ struct TracedRay {
     int surface;
 };
 
-// probe_paths.comp: how and where one path ended.
+// probe_paths.comp: the end of one path.
 struct PathEnd {
     uint status;
     int surface;
-    real x; // mm, as Detection, for light that left the specimen through the gate (of meaning if it arrived), else 0
+    real x; // mm, as Detection, for light that left the specimen through the gate (has a meaning only if it arrived),
+            // else 0
     real y;
-    real weight; // of the light at x and y
+    real weight; // weight of the light at x and y
 };
 
-// probe_hits.comp, which gives a Hit of each.
+// probe_hits.comp: a ray, of which the kernel finds the Hit.
 struct ProbeRay {
     real3 origin;
     real3 direction;
 };
 
-// time_hits.comp: what it pushes, and where rays that leave the specimen start.
+// time_hits.comp: its push constants, and the points at which rays leave the specimen.
 struct TimedHits {
     uint count;
     uint seed;
     real aperture;    // sine of the cone's half-angle
-    uint strata_bits; // points lie in 2^strata_bits strata a side, in Morton order; 0: anywhere
+    uint strata_bits; // points are stratified in 2^strata_bits strata a side, in Morton order; 0: not stratified
 };
 struct TimedStart {
     real3 position;

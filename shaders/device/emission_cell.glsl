@@ -1,19 +1,20 @@
-// In which cell of the emission a path is (physics/emission_cell.glsl): of cells in the order of their paths, the
-// last that begins at or before the path.
+// Finds the cell of the emission that a path starts in (physics/emission_cell.glsl): cells are in the order of their
+// paths, and the cell is the last one that begins at or before the path.
 layout(set = 0, binding = BINDING_EMISSION_CELLS, scalar) readonly buffer EmissionCells {
     uvec2 emission_given[]; // the upper 16 bits of each number, lower half of a word first
 };
 layout(set = 0, binding = BINDING_EMISSION_FIRST, scalar) readonly buffer EmissionFirst {
-    uint64_t emission_first[]; // path of each cell
+    uint64_t emission_first[]; // number of each cell's first path
 };
 
-uint emission_place = 0xFFFFFFFFu; // cell of the invocation's last path, which ascend; at first none
+uint emission_place = 0xFFFFFFFFu; // cell of the invocation's last path, as its paths ascend; 0xFFFFFFFF: none yet
 
 EmissionCell emission_cell(uvec2 path) {
     uint64_t number = packUint2x32(path);
     uint last = emission_cells - 1u;
     if (emission_place > last) {
-        // Cells have nearly equal numbers of paths: where it is on average, mostly eight steps off at most.
+        // Cells have nearly equal numbers of paths, so the search starts at the average place, mostly within eight
+        // steps.
         real average = (real(path.y) * real(4294967296.0) + real(path.x)) * emission_cells_per_path;
         emission_place = uint(min(average, real(last)));
         while (emission_first[emission_place] > number) {

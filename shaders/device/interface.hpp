@@ -1,4 +1,4 @@
-// The C++ side of what host and kernels of the trace share besides the physics' records (physics/physics.hpp).
+// The C++ side of the records that host and kernels of the trace share besides the physics' own (physics/physics.hpp).
 #pragma once
 
 #include "physics/physics.hpp"

@@ -1,4 +1,4 @@
-// What the kernels begin with that meet the specimen: the bindings and the chosen traversal.
+// Kernels that meet the specimen include this file first: the bindings and the chosen traversal.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require

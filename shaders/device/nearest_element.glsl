@@ -1,19 +1,19 @@
-// The instrument's elements, and the facets of those that are meshes, as procedural boxes, in the structure that holds
-// the specimen too: nearest_element() of physics/nonsequential.glsl. Elements and specimen stand in frames of their own
-// (they move against each other from image to image), so each is asked for by itself.
+// nearest_element() of physics/nonsequential.glsl: the instrument's elements, and the facets of meshes, as procedural
+// boxes in the structure that also holds the specimen. Elements and specimen have different frames, since they move
+// against each other from image to image, so each is traversed by itself.
 layout(set = 0, binding = BINDING_ELEMENTS, scalar) readonly buffer Elements { Element elements[]; };
 layout(set = 0, binding = BINDING_ELEMENT_ORDER, scalar) readonly buffer ElementOrder {
     uint element_order[];
-}; // of the boxes: an element's index, or with FACET_BIT a facet's
+}; // by box: an element's index, or with FACET_BIT a facet's
 layout(set = 0, binding = BINDING_FACETS, scalar) readonly buffer Facets { Facet facets[]; };
 
 Element element_at(int index) { return elements[index]; }
 Facet facet_at(int index) { return facets[index]; }
 
-// mm: no instrument is larger.
+// mm, larger than any instrument.
 const real FARTHEST = real(1e6);
 
-// What the box at this place in the order holds.
+// Tests the element or facet in the box at this place of the order; returns the nearer of it and `nearest`.
 NearestElement consider_box(NearestElement nearest, uint place, RayFrame frame, real3 direction, PathPlace from,
                             real least) {
     uint held = element_order[place];
@@ -49,7 +49,7 @@ ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) {
         }
     }
 #else
-    // Boxes and origin are as far apart as the instrument is long.
+    // The margin is for coordinates of up to 1 m, which boxes of an instrument may have though the origin's are small.
     real reach = max(max(abs(origin.x), abs(origin.y)), max(abs(origin.z), real(1e3)));
     BvhWalk walk = bvh_walk(batch.elements_root, origin, direction, real(0.0), real(16.0) * SURFACE_EPSILON * reach);
     while (bvh_proceed(walk, nearest.hit.distance)) {

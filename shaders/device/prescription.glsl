@@ -1,8 +1,8 @@
-// The instrument at hand as constants of the kernel: planes, spheres, missing aspheric terms and apertures fold away,
-// and the rest are immediate operands. What few instruments have (placement, dispersion, layers) stays in the uniform
-// block. DeviceScene::specialised_constants gives the values, KNOWN_SURFACES surfaces at most.
-layout(constant_id = CONSTANT_KNOWN_FIRST) const int known_first = 0; // the surfaces that follow are known_first ...
-layout(constant_id = CONSTANT_KNOWN_COUNT) const int known_count = 0; // ... known_first + known_count - 1
+// The instrument's prescription as constants of the kernel: planes, spheres, missing aspheric terms and apertures fold
+// away, and the rest are immediate operands. Rare fields (placement, dispersion, layers) stay in the uniform block.
+// DeviceScene::specialised_constants gives the values of at most KNOWN_SURFACES surfaces.
+layout(constant_id = CONSTANT_KNOWN_FIRST) const int known_first = 0; // the first surface that is known
+layout(constant_id = CONSTANT_KNOWN_COUNT) const int known_count = 0; // number of surfaces known from there on
 
 #define VKFV_DECLARE_CONSTANT(id, type, name) layout(constant_id = id) const type known_##name = type(0);
 #define VKFV_KNOW(id, type, name) known.name = known_##name;

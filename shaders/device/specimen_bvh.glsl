@@ -1,22 +1,24 @@
-// Triangles, and analytic surfaces as procedural boxes, through the tree of bvh.glsl: for devices without ray query.
+// Traversal of triangles, and of analytic surfaces as procedural boxes, by the tree of bvh.glsl: for devices without
+// ray query.
 #include "device/specimen_primitives.glsl"
 #include "device/bvh.glsl"
 
-// TrianglePair of src/trace/structures/triangle_pairs.hpp, in the order of the tree: twelve numbers, so that three
-// loads fetch them.
+// Pairs of type TrianglePair (src/trace/structures/triangle_pairs.hpp), in the order of the tree: twelve numbers, so
+// that three loads fetch one.
 layout(set = 0, binding = BINDING_VERTICES, scalar) readonly buffer Pairs { vec4 pair_parts[]; };
 
-// EntryNodes of src/trace/structures/entry_nodes.hpp.
+// Table of type EntryNodes (src/trace/structures/entry_nodes.hpp).
 layout(set = 0, binding = BINDING_ENTRY_NODES, scalar) readonly buffer Entries {
-    int finest_entries; // level
+    int finest_entries; // level of the finest entries
     uint entry_nodes[];
 };
 
-// The rounding of a box's distance is below this many of specimen_rounding(): some ten steps of the coordinates.
+// The rounding of a box's distance is below this multiple of specimen_rounding(): some ten steps of the coordinates.
 const real BVH_MARGIN = real(4.0);
 
-// The node of the tree that holds whatever a ray may meet: the further up, the longer it is across, on whose way from
-// bottom to top most surfaces are flat. margin: mm, of rounding.
+// The node of the tree at which the traversal enters; it holds all that the ray may meet. The longer the ray's way
+// between bottom and top is across, the further up the node stands; over most surfaces, which are flat, it is short.
+// margin: mm, of rounding.
 uint entry_node(real3 origin, real3 direction, RayInterval over, real margin) {
     real half_length = real(0.5) * (over.stop - over.start);
     real middle = over.start + half_length;
@@ -42,17 +44,18 @@ BvhWalk specimen_walk(real3 origin, real3 direction, RayInterval over) {
 struct NearestTriangle {
     bool found;
     real distance;
-    uint index; // twice its pair's, plus 1 for the second
+    uint index; // 2 * pair, plus 1 for the pair's second triangle
     vec2 barycentrics;
 };
 
-// u, v, w: edge functions opposite to the corners, whose depths are given.
+// Keeps the triangle if it is the nearest so far. u, v, w: edge functions opposite to the corners; depths: of the
+// corners along the ray, mm.
 void consider_triangle(inout NearestTriangle nearest, real u, real v, real w, real3 depths, uint index, real start) {
     real total = u + v + w;
     bool inside = (min(u, min(v, w)) >= real(0.0) || max(u, max(v, w)) <= real(0.0)) && total != real(0.0);
     real inverse = inside ? real(1.0) / total : real(0.0);
     real distance = (u * depths.x + v * depths.y + w * depths.z) * inverse;
-    // At a tie the first one, in whatever order the tree hands them out.
+    // At a tie the lower index wins, so that the result does not depend on the order of traversal.
     bool nearer =
         distance < nearest.distance || (distance == nearest.distance && (!nearest.found || index < nearest.index));
     bool taken = inside && nearer && distance > start;
@@ -71,7 +74,7 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     nearest.index = 0u;
     nearest.barycentrics = vec2(0.0, 0.0);
     while (bvh_proceed(walk, nearest.distance)) {
-        // All of a node's at once: lanes part less than if each went on for itself.
+        // All primitives of a node are tested at once, so that lanes diverge less.
         bool another = true;
         while (another) {
             vec4 part_0 = pair_parts[3u * walk.primitive];

@@ -1,6 +1,6 @@
-// The one function behind which the traversals stand: Hit specimen_hit(origin, direction), the nearest meeting of a
-// ray with the specimen (specimen frame, mm, unit direction). The kernel's defines choose the traversal, and the
-// constant specimen_kind the kind of specimen, so that a pipeline holds one way only.
+// The interface of all traversals: Hit specimen_hit(origin, direction), the nearest meeting of a ray with the specimen
+// (specimen frame, mm, unit direction). The kernel's defines choose the traversal, and the constant specimen_kind the
+// kind of specimen, so that a pipeline holds one way only.
 //
 // A height field separates above from below. A ray that starts over the footprint, or comes through its top, is above
 // and is met where it first gets below; one that starts below by rounding is met at once only where it does not come
@@ -12,7 +12,7 @@ layout(set = 0, binding = BINDING_HEIGHTS, scalar) readonly buffer Heights { rea
 
 real lattice_at(int column, int row) { return heights[row * specimen.columns + column]; }
 
-// Rows as the heights'.
+// Factors by rows, in the order of the heights' rows.
 layout(set = 0, binding = BINDING_REFLECTANCES, scalar) readonly buffer Reflectances { real reflectances[]; };
 
 layout(set = 0, binding = BINDING_MATERIAL, scalar) readonly buffer MaterialNumbers { real material_numbers[]; };
@@ -26,14 +26,15 @@ real pattern_point(Pattern pattern, int column, int row) {
     return pattern.of_light != 0u ? light_points[place] : reflectances[place];
 }
 
-// A ray cut to what can meet the specimen. Its start is re-based, as the error of a distance grows with the distance.
+// A ray clipped to the specimen's bounds. Its origin is moved there, as the error of a distance grows with the
+// distance.
 struct SpecimenRay {
     real3 origin;
     real3 direction;
     real advance;     // distance along the given ray at the new origin; may be slightly negative
-    RayInterval over; // from the new origin: over the footprint and between bottom and top; empty: no meeting
-    bool beside;      // it comes in through a side of the footprint
-    bool through;     // it goes down through the bottom: a surface without holes must have met it
+    RayInterval over; // mm, from the new origin: over the footprint and between bottom and top; empty: no meeting
+    bool beside;      // the ray comes in through a side of the footprint
+    bool through;     // the ray goes down through the bottom: a surface without holes must have met it
 };
 
 // Bounds the rounding of a point on a ray near the specimen: four steps (2^-23) of the largest coordinate.
@@ -42,7 +43,8 @@ real specimen_rounding() {
     return real(4.0) * SURFACE_EPSILON * max(across, max(abs(specimen.bottom), abs(specimen.top)));
 }
 
-// widening, mm: of the footprint on each side.
+// Clips a ray to the specimen's box. rounding, widening: mm, by which the box grows along z and on each side of the
+// footprint.
 SpecimenRay cut_to_specimen(real3 origin, real3 direction, real rounding, real widening) {
     real upper = specimen.top + rounding;
     real lower = specimen.bottom - rounding;

@@ -1,11 +1,11 @@
-// What the traversals through trees of primitives share: triangles, analytic surfaces as procedural boxes (tiles), and
-// how a ray that slips through is tried again. The traversal itself defines
+// Functions common to the traversals of trees of primitives: triangles, analytic surfaces as procedural boxes (tiles),
+// and the repeated test of a ray that slips through. Each traversal itself defines
 //
-//     Hit meet_triangles(real3 origin, real3 direction, RayInterval over)  the nearest one, from whatever side
+//     Hit meet_triangles(real3 origin, real3 direction, RayInterval over)  the nearest one, from either side
 //     Hit meet_tiles(SpecimenRay ray, real rounding)
 
 struct SurfaceTile {
-    real3 lower; // its box, mm, as the tree's builder had it
+    real3 lower; // lower corner of its box, mm, as the tree's builder had it
     real3 upper;
 };
 layout(set = 0, binding = BINDING_TILES, scalar) readonly buffer Tiles { SurfaceTile tiles[]; };
@@ -13,7 +13,8 @@ layout(set = 0, binding = BINDING_TILES, scalar) readonly buffer Tiles { Surface
 // A ray aimed at an edge may slip between its triangles: it is tried again beside itself by this many roundings.
 const int PRIMITIVE_TRIES = 4;
 
-// Position and normal from the barycentrics of the second and third corner: on the facet, however far the ray came.
+// Position and normal from the barycentrics of the second and third corner: the position is on the facet, however far
+// the ray came.
 Hit triangle_hit(real3 corner, real3 second, real3 third, vec2 barycentrics, real distance, real3 direction) {
     real3 edge_1 = second - corner;
     real3 edge_2 = third - corner;
@@ -27,12 +28,12 @@ Hit triangle_hit(real3 corner, real3 second, real3 third, vec2 barycentrics, rea
     return hit;
 }
 
-// Where the ray meets the surface within one tile, if it does.
+// The meeting of the ray with the surface within one tile, or none.
 Hit tile_hit(SurfaceTile tile, SpecimenRay ray, real rounding) {
     RayInterval inside = ray.over;
     inside = clip_interval(inside, ray.origin.x, ray.direction.x, tile.lower.x - rounding, tile.upper.x + rounding);
     inside = clip_interval(inside, ray.origin.y, ray.direction.y, tile.lower.y - rounding, tile.upper.y + rounding);
-    // A ray from beside may be below: the march over all of it knows from where it comes.
+    // A ray from beside may be below the surface, so the march covers all of the ray to know its side.
     inside.start = ray.beside ? real(0.0) : inside.start;
     inside.stop = ray.beside ? ray.over.stop : inside.stop;
     Hit hit = march_surface(specimen, ray.origin, ray.direction, inside.start, inside.stop);
@@ -41,7 +42,7 @@ Hit tile_hit(SurfaceTile tile, SpecimenRay ray, real rounding) {
     return hit;
 }
 
-#ifndef VKFV_AT_A_PRIMITIVE // a shader that is called for one primitive
+#ifndef VKFV_AT_A_PRIMITIVE // any shader but those that are called for one primitive
 Hit meet_triangles(real3 origin, real3 direction, RayInterval over);
 Hit meet_tiles(SpecimenRay ray, real rounding);
 
@@ -58,7 +59,7 @@ Hit specimen_hit(real3 origin, real3 direction) {
             real aside = real(0.0);
             bool open = true;
             for (int i = 0; i < PRIMITIVE_TRIES && open; ++i) {
-                // Askew to rows, columns and diagonals, and back over the footprint at its border.
+                // The shift is askew to rows, columns and diagonals, and points back over the footprint at its border.
                 real3 nudge = real3(ray.origin.x > real(0.0) ? -aside : aside,
                                     ray.origin.y > real(0.0) ? real(-0.6) * aside : real(0.6) * aside, real(0.0));
                 hit = meet_triangles(ray.origin + nudge, direction, ray.over);

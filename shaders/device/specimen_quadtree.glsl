@@ -1,7 +1,7 @@
-// Height fields and analytic surfaces, mostly met from above: a ray jumps as far as nothing can be in its way, and
-// where it has come close to the surface it walks from cell to cell. What it may jump over is read off ceilings: of
-// each block of 2^level x 2^level cells the highest point of the block and of its eight neighbours. From anywhere in
-// the block a ray is free down to the ceiling or until it is a block's side further across, whichever comes first
+// Traversal of height fields and analytic surfaces, mostly met from above: a ray jumps over empty space, and close to
+// the surface it walks from cell to cell. The length of a jump is read off ceilings: a block of 2^level x 2^level cells
+// has as its ceiling the highest point of the block and of its eight neighbours. From anywhere in the block a ray is
+// free down to the ceiling or until it is a block's side further across, whichever comes first
 // (after maximum mipmaps, A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic
 // height field rendering", I3D 2008; with the neighbours, no border of blocks need be met). In a cell the side of the
 // surface that the ray was on is known, and a meeting is a change of side: no rounding at the border of two facets can
@@ -12,14 +12,15 @@ layout(set = 0, binding = BINDING_CEILINGS, scalar) readonly buffer Ceilings {
     real ceilings[]; // mm
 };
 
-// Of a height field two points of a column a step, so that a cell takes two neighbouring loads: (i, j) and (i, j+1).
+// A height field has two points of a column at each step, (i, j) and (i, j+1), so that a cell takes two neighbouring
+// loads.
 layout(set = 0, binding = BINDING_HEIGHTS, scalar) readonly buffer Columns { real2 column_steps[]; };
 
-// Whether some cells are split from (i+1, j) to (i, j+1) instead of from (i, j) to (i+1, j+1): those of which the last
+// True if some cells are split from (i+1, j) to (i, j+1) instead of from (i, j) to (i+1, j+1): cells for which the last
 // bit of (i, j)'s height is set. Such a cell is met as its mirror image in x.
 layout(constant_id = CONSTANT_FALLING_CELLS) const bool has_falling_cells = false;
 
-// Cells walked before jumps are tried again.
+// Number of cells walked before jumps are tried again.
 const int CELLS_AHEAD = 16;
 
 // Heights of a cell's corners: (i, j), (i+1, j), (i, j+1), (i+1, j+1).
@@ -39,14 +40,14 @@ real facet_height(vec4 corners, real2 fraction, bool lower_right) {
 
 // A ray over the grid of cells, by its distance t in mm.
 struct GridRay {
-    ivec2 cells;                 // of the grid
-    real2 per_mm;                // cells
-    real2 place;                 // cells
+    ivec2 cells;                 // size of the grid
+    real2 per_mm;                // cells/mm
+    real2 place;                 // cells, at t = 0
     real2 speed;                 // cells/mm
     real2 slowness;              // mm/cell, finite
-    real to_next_cell;           // mm, at least, to be one cell further along x or y
-    real drift_slowness;         // mm, to be one cell further across the diagonals
-    real falling_drift_slowness; // the same of a mirrored cell
+    real to_next_cell;           // mm, lower bound of the way to one cell further along x or y
+    real drift_slowness;         // mm, to move one cell across the diagonals
+    real falling_drift_slowness; // mm, the same for a mirrored cell
     ivec2 forward;               // 1: towards larger columns, larger rows
     real height;                 // mm
     real rise;                   // mm/mm
@@ -59,7 +60,7 @@ GridRay grid_ray(real3 start, real3 direction, real inverse_rise) {
     ray.per_mm = real2(ceilings_header.per_x, ceilings_header.per_y);
     ray.place = real2(start.x - specimen.x_min, start.y - specimen.y_min) * ray.per_mm;
     ray.speed = direction.xy * ray.per_mm;
-    // Slower than this is less than a cell in 1e9 mm, and its inverse is finite.
+    // A slower ray moves by less than a cell in 1e9 mm; the bound keeps its inverse finite.
     bvec2 moves = greaterThan(abs(ray.speed), real2(1e-9, 1e-9));
     ray.slowness = real2(moves.x ? real(1.0) / ray.speed.x : real(1e9), moves.y ? real(1.0) / ray.speed.y : real(1e9));
     ray.forward = ivec2(ray.slowness.x >= real(0.0) ? 1 : 0, ray.slowness.y >= real(0.0) ? 1 : 0);
@@ -70,7 +71,7 @@ GridRay grid_ray(real3 start, real3 direction, real inverse_rise) {
     ray.height = start.z;
     ray.rise = direction.z;
     ray.inverse_rise = inverse_rise;
-    // Short of a cell by far more than a place is rounded by.
+    // The bound is short of a cell by far more than the rounding of a place.
     ray.to_next_cell = real(0.98) * min(abs(ray.slowness.x), abs(ray.slowness.y));
     return ray;
 }
@@ -79,8 +80,8 @@ ivec2 cell_at(GridRay ray, real t) { return clamp(ivec2(ray.place + t * ray.spee
 
 struct Jump {
     real t;    // the ray is free until there
-    bool over; // it is above the ceiling where it starts
-    bool open; // the ceiling was not what ended it
+    bool over; // the ray is above the ceiling where it starts
+    bool open; // the ray ends the jump by leaving the block, not by reaching the ceiling
 };
 
 Jump jump_over(GridRay ray, real t, int level, int columns, int first) {
@@ -126,18 +127,18 @@ CellRay ray_over_cell(GridRay ray, ivec2 cell) {
     return over;
 }
 
-// Where a ray is on its way from cell to cell.
+// State of a ray on its way from cell to cell.
 struct CellWalk {
     real t;
-    real side;      // of the surface: above, below (-1), not yet known (0)
-    bool under_way; // else the facet is found or the ray has left
+    real side;      // 1: above the surface, -1: below, 0: not yet known
+    bool under_way; // false: the facet is found or the ray has left
     bool found;
-    ivec2 cell; // with the facet, once found
-    real from;  // within that facet
+    ivec2 cell; // the cell with the facet, once found
+    real from;  // start of the way within that facet
     real to;
 };
 
-// Along the facets of at most CELLS_AHEAD cells.
+// Walks along the facets of at most CELLS_AHEAD cells.
 void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
     for (int k = 0; k < CELLS_AHEAD && walk.under_way; ++k) {
         CellRay over = ray_over_cell(ray, walk.cell);
@@ -151,12 +152,13 @@ void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
         real2 to_border = (real2(over.forward) - local) * over.slowness;
         bool cross_x = to_border.x <= to_border.y;
         real leave = clamp(min(to_border.x, to_border.y), walk.t, stop);
-        // On the diagonal, where both facets have the same height.
+        // Height over the diagonal, where both facets have the same height.
         real middle = (local.y - local.x) * over.drift_slowness;
         bool crosses = middle > walk.t && middle < leave;
         real along = clamp(local.x + middle * over.speed.x, real(0.0), real(1.0));
         real gap_middle = ray.height + middle * ray.rise - (corners.x + along * (corners.w - corners.x));
-        // On the border, which the next cell sees alike. A ray that stops short of it does so above or below all.
+        // Height over the border, which the next cell sees alike. A ray that stops short of it does so above or below
+        // all.
         real2 ends =
             cross_x ? (over.forward.x == 1 ? corners.yw : corners.xz) : (over.forward.y == 1 ? corners.zw : corners.xy);
         along = clamp(cross_x ? local.y + leave * over.speed.y : local.x + leave * over.speed.x, real(0.0), real(1.0));
@@ -174,7 +176,7 @@ void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
     }
 }
 
-// On the facet that the walk has found.
+// The hit of the facet that the walk has found.
 Hit facet_hit(CellWalk walk, GridRay ray, real3 start, real3 direction) {
     Hit hit;
     CellRay over = ray_over_cell(ray, walk.cell);
@@ -205,7 +207,7 @@ Hit specimen_hit(real3 origin, real3 direction) {
     real upper = specimen.top + rounding;
     real lower = specimen.bottom - rounding;
     bool down = direction.z < real(0.0);
-    // Re-based, as cut_to_specimen() does.
+    // The origin is moved to the specimen's top, as in cut_to_specimen().
     real inverse_rise = real(1.0) / (abs(direction.z) > real(1e-12) ? direction.z : real(1e-12));
     bool from_top = down && origin.z >= specimen.top;
     real advance = from_top ? (upper - origin.z) * inverse_rise : real(0.0);
@@ -221,7 +223,7 @@ Hit specimen_hit(real3 origin, real3 direction) {
     walk.t = max(real(0.0), max(enters.x, enters.y));
     bool beside = walk.t > real(0.0);
     walk.side = beside ? real(0.0) : real(1.0);
-    // What rises faster than the surface anywhere leaves it.
+    // A ray that rises faster than the surface anywhere leaves it.
     bool escapes = !beside && direction.z > ceilings_header.steepest * length(direction.xy);
     walk.under_way = walk.t <= stop && !escapes && specimen_kind != SPECIMEN_MESH;
     walk.found = false;
@@ -243,7 +245,7 @@ Hit specimen_hit(real3 origin, real3 direction) {
         }
         walk.under_way = walk.t <= stop;
         if (specimen_kind == SPECIMEN_ANALYTIC && walk.under_way) {
-            // A ray from beside may be below: the march over all of it knows from where it comes.
+            // A ray from beside may be below the surface, so the march covers all of the ray to know its side.
             real ahead = beside ? stop : min(stop, walk.t + ray.to_next_cell * real(CELLS_AHEAD));
             hit = march_surface(specimen, start, direction, beside ? real(0.0) : walk.t, ahead);
             walk.found = hit.found == 1u;

@@ -1,6 +1,6 @@
-// Triangles, and analytic surfaces as procedural boxes, through VK_KHR_ray_tracing_pipeline: for the probe that meets
-// rays with acceleration structures on GPUs that have no ray query. Its generation stage calls specimen_hit(); the
-// stages at a primitive compute that primitive's hit alone.
+// Traversal of triangles, and of analytic surfaces as procedural boxes, by VK_KHR_ray_tracing_pipeline: for the probe
+// of acceleration structures on GPUs that have no ray query. Its generation stage calls specimen_hit(); the stages at a
+// primitive compute that primitive's hit alone.
 #include "device/specimen_primitives.glsl"
 #include "device/specimen_structure.glsl"
 
@@ -18,8 +18,8 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) { return mee
 
 Hit meet_tiles(SpecimenRay ray, real rounding) { return meet_structure(ray.origin, ray.direction, ray.over); }
 #else
-// The hit of a ray with one tile. The ray starts where the generation stage has cut it to the specimen, so that cutting
-// it once more changes nothing.
+// The hit of a ray with one tile. The ray starts where the generation stage has clipped it to the specimen, so that
+// clipping it once more changes nothing.
 Hit hit_of_tile(uint tile, real3 origin, real3 direction) {
     real rounding = specimen_rounding();
     return tile_hit(tiles[tile], cut_to_specimen(origin, direction, rounding, rounding), rounding);

@@ -1,10 +1,10 @@
-// Triangles, and analytic surfaces as procedural boxes, through VK_KHR_ray_query.
+// Traversal of triangles, and of analytic surfaces as procedural boxes, by VK_KHR_ray_query.
 #include "device/specimen_primitives.glsl"
 #include "device/specimen_structure.glsl"
 
-// Bits of AccelerationStructure::join: parts in the order that they were joined in.
+// Instance masks: bit k is of the k-th part that AccelerationStructure::join joined in.
 const uint SPECIMEN_MASK = 1u;
-const uint ELEMENT_MASK = 2u; // the instrument's, for non-sequential paths
+const uint ELEMENT_MASK = 2u; // the instrument's elements, for non-sequential paths
 
 Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     rayQueryEXT query;
@@ -30,7 +30,7 @@ Hit meet_tiles(SpecimenRay ray, real rounding) {
     hit.distance = ray.over.stop;
     while (rayQueryProceedEXT(query)) {
         Hit candidate = tile_hit(tiles[rayQueryGetIntersectionPrimitiveIndexEXT(query, false)], ray, rounding);
-        // A march knows nothing of what was met in other boxes.
+        // A march knows nothing of the meetings in other boxes, so only a nearer one counts.
         if (candidate.found == 1u && candidate.distance < hit.distance) {
             hit = candidate;
             rayQueryGenerateIntersectionEXT(query, candidate.distance);

@@ -4,7 +4,7 @@ layout(set = 0, binding = BINDING_STRUCTURE) uniform accelerationStructureEXT sp
 layout(set = 0, binding = BINDING_VERTICES, scalar) readonly buffer Vertices { real vertices[]; }; // three a vertex, mm
 layout(set = 0, binding = BINDING_TRIANGLES, scalar) readonly buffer Triangles {
     uint triangles[];
-}; // three a triangle
+}; // three indices a triangle
 
 real3 triangle_vertex(uint triangle, uint corner) {
     uint first = 3u * triangles[3u * triangle + corner];

@@ -2,8 +2,8 @@
 layout(constant_id = CONSTANT_LEDGER_SLOTS) const uint ledger_slots = 1;
 layout(set = 0, binding = BINDING_LEDGER, scalar) buffer LedgerCounts { uint64_t ledger_counts[]; };
 
-// With directed scatter the sums of the weights, and the squares' sum of what each path adds to them (weight_square),
-// follow the counts; in shared memory as pairs of words.
+// With directed scatter the sums of the weights, and the sum of the squares of each path's total (weight_square),
+// follow the counts; in shared memory they are pairs of words.
 const bool weighted = (scene_features & FEATURE_DIRECTED_SCATTER) != 0u;
 const uint weighted_slots = weighted ? ledger_slots + 1u : 1u;
 
@@ -31,7 +31,7 @@ void tally_sum(uint slot, uint amount) {
     }
 }
 
-// weight: read with directed scatter alone.
+// Counts a fate. weight: in units of 1 / WEIGHT_ONE, used with directed scatter alone.
 void tally_fate(Fate fate, uint weight) {
     uint slot = uint(ledger_slot(fate));
     atomicAdd(tally[slot], 1u);

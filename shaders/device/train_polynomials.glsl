@@ -1,5 +1,5 @@
 // Polynomials of the illumination as constants of the kernel; DeviceScene gives the values.
-layout(constant_id = CONSTANT_POLYNOMIAL_EDGES) const int known_edges = -1; // of none
+layout(constant_id = CONSTANT_POLYNOMIAL_EDGES) const int known_edges = -1; // -1: no polynomials
 layout(constant_id = CONSTANT_POLYNOMIAL_PER_RADIUS) const real known_per_radius = real(1);
 layout(constant_id = CONSTANT_POLYNOMIAL_SHIFT) const real known_shift = real(0);
 layout(constant_id = CONSTANT_POLYNOMIAL_PER_SINE) const real known_per_sine = real(1);

@@ -1,16 +1,16 @@
-// What host and kernels/estimate_light.comp share beside the rule: where the kernel finds the numbers and puts what
-// they say.
+// Records that host and kernels/estimate_light.comp share besides the rule: the addresses of the counted numbers and of
+// the estimates.
 
 const uint ESTIMATE_WORKGROUP = 128u;
 
 struct EstimatedPixels {
     EstimateRule rule;
-    double waves_scale; // W for each unit of the light that waves make
-    double waves_noise; // what filtering leaves of the standard error
-    uint64_t numbers;   // addresses: of 64-bit numbers, pixel after pixel, randomisation after randomisation
-    uint64_t waves;     // of float, the light as waves make it; 0: as rays bring it
-    uint64_t estimates; // of double: standard errors of all pixels, then fluxes, then, if asked for, those by rays
+    double waves_scale; // W for each unit of the wave image
+    double waves_noise; // factor of the standard error that filtering leaves
+    uint64_t numbers;   // address of 64-bit numbers, pixel after pixel, randomisation after randomisation
+    uint64_t waves;     // address of the wave image in float; 0: fluxes are those of rays
+    uint64_t estimates; // address of doubles: all standard errors, then all fluxes, then, if by_rays, fluxes of rays
     uint pixels;
-    uint stride;  // numbers from a randomisation to the next
-    uint by_rays; // 1: fluxes as rays bring them are asked for beside those of waves
+    uint stride;  // numbers from one randomisation to the next
+    uint by_rays; // 1: fluxes of rays are wanted besides those of the wave image
 };

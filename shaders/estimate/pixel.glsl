@@ -1,18 +1,18 @@
-// What the numbers that were counted for a pixel say of its light, in double and operation by operation: host and
-// devices find the same bits where their quotients and roots are IEEE 754's, as those of lavapipe and NVIDIA are. One
-// source, as GLSL for kernels/estimate_light.comp and as C++ (estimate.hpp).
+// A pixel's flux and standard error from its counted numbers, in double and operation by operation: host and devices
+// find the same bits where their quotients and roots are IEEE 754's, as those of lavapipe and NVIDIA are. One source
+// serves as GLSL for kernels/estimate_light.comp and as C++ (estimate.hpp).
 
-const uint ESTIMATE_COUNTS = 0u;         // a pixel has one number: of rays
-const uint ESTIMATE_WEIGHTS = 1u;        // two: the sum of the rays' weights and the sum of the weights' squares
-const uint ESTIMATE_RANDOMISATIONS = 2u; // one in each randomisation: the sum over its paths
+const uint ESTIMATE_COUNTS = 0u;         // a pixel has one number: its count of rays
+const uint ESTIMATE_WEIGHTS = 1u;        // a pixel has two numbers: sums of its rays' weights and of their squares
+const uint ESTIMATE_RANDOMISATIONS = 2u; // a pixel has one number in each randomisation: the sum over its paths
 
-// How numbers become flux.
+// The rule that converts numbers to flux.
 struct EstimateRule {
     uint kind;
-    double scale;           // W that 1 stands for: of one ray of weight 1, or of the mean over a pixel's paths
-    double unit;            // of a number; of a sum over paths: of their mean
-    double unit_of_squares; // of weights
-    double count;           // of launched rays, or of randomisations
+    double scale;           // W of one ray of weight 1, or of a mean over a pixel's paths of 1
+    double unit;            // value of 1 in a number; for a sum over paths: in their mean
+    double unit_of_squares; // value of 1 in a sum of squared weights
+    double count;           // number of launched rays, or of randomisations
 };
 
 struct PixelEstimate {
@@ -27,14 +27,15 @@ VKFV_FUNCTION PixelEstimate scaled_estimate(EstimateRule rule, double value, dou
     return estimate;
 }
 
-// From what a pixel has of all launched rays: a sum of values and of their squares (Poisson's where they are 1).
+// The estimate from all launched rays: sums of a pixel's values and of their squares, which are equal (Poisson) where
+// the values are 1.
 VKFV_FUNCTION PixelEstimate estimate_of_rays(EstimateRule rule, double sum, double squares) {
     VKFV_PRECISE double expected = sum * sum / rule.count;
     VKFV_PRECISE double variance = max(squares - expected, double(0.0));
     return scaled_estimate(rule, sum, variance);
 }
 
-// Of the means of randomisations, one after the other.
+// Sums over the means of the randomisations, added one after the other.
 struct MeanSums {
     double sum;
     double squares;
@@ -50,7 +51,7 @@ VKFV_FUNCTION MeanSums with_randomisation(EstimateRule rule, MeanSums sums, doub
     return all;
 }
 
-// From their scatter.
+// The estimate from the scatter of the randomisations' means.
 VKFV_FUNCTION PixelEstimate estimate_of_randomisations(EstimateRule rule, MeanSums sums) {
     VKFV_PRECISE double mean = sums.sum / rule.count;
     VKFV_PRECISE double spread = sums.squares / rule.count - mean * mean;

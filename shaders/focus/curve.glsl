@@ -1,4 +1,4 @@
-// A focus curve as it passes by: each image's value is judged once those within the range after it are there too.
+// A focus curve that is followed image by image: a value is judged once the values within the range after it are known.
 
 #ifdef __cplusplus
 template <class Scene>
@@ -41,14 +41,15 @@ VKFV_FUNCTION CurveRecord empty_curve() {
     return curve;
 }
 
-// Larger than all values within the range before it, and no smaller than those after it; never the first or last image.
+// True if the value is larger than all within the range before it and no smaller than those after it; never for the
+// first or last image.
 VKFV_SCENE_FUNCTION bool is_local_maximum(VKFV_SCENE_PARAMETER FocusPlan plan, int at, int images) {
     if (at == 0 || at == images - 1) {
         return false;
     }
     real value = curve_value(VKFV_SCENE at);
     if (!(value > curve_value(VKFV_SCENE at - 1)) || value < curve_value(VKFV_SCENE at + 1)) {
-        return false; // most are
+        return false; // most images end here
     }
     for (int d = 2; d <= plan.peak_range; ++d) {
         if (at - d >= 0 && !(value > curve_value(VKFV_SCENE at - d))) {
@@ -63,11 +64,11 @@ VKFV_SCENE_FUNCTION bool is_local_maximum(VKFV_SCENE_PARAMETER FocusPlan plan, i
 
 struct CurveStep {
     CurveRecord curve;
-    real place; // where the largest value stands now, in images; NO_PLACE: where it stood before
+    real place; // images, place of the largest value; NO_PLACE: unchanged
 };
 
-// How far a curve falls and rises again, at most, with the value added; and the deepest valley that a later maximum can
-// rise from.
+// rival_with(): the deepest fall and rise of a curve so far, with the value added. valley_with(): the deepest valley
+// that a later maximum can rise from.
 VKFV_FUNCTION real rival_with(real rival, real highest, real valley, real value) {
     return max(rival, min(highest, value) - valley);
 }
@@ -76,8 +77,8 @@ VKFV_FUNCTION real valley_with(real highest, real valley, real value) {
     return value > highest ? value : min(valley, value);
 }
 
-// What the shape of the whole curve is judged by. `highest` is the largest value so far, whether the curve turns there
-// or not.
+// Updates the fields that judge the shape of the whole curve. `highest` is the largest value so far, whether the curve
+// turns there or not.
 VKFV_FUNCTION CurveRecord follow_shape(CurveRecord before, real value, int at) {
     CurveRecord curve = before;
     curve.latest = value;
@@ -126,14 +127,14 @@ VKFV_FUNCTION SingleRecord follow_single(SingleRecord before, real value, int at
     return single;
 }
 
-// How far the largest value of single images stands above their mean.
+// The largest value of single images minus their mean.
 VKFV_FUNCTION real single_rise(SingleRecord single, int images) {
     return single.highest - single.first - quotient(single.sum, real(images));
 }
 
-// The curve with the image `at` added. images: how many values are there, at least to at + peak_range, or all.
-// Fits are made only where the curve turns: the largest value of all is one of these, or stands at an end. Near the
-// ends the range is as far as it goes on both sides.
+// The curve with the image `at` added. images: number of values known, at least to at + peak_range, or all. Fits are
+// made only where the curve turns: the largest value of all is one of these, or stands at an end. Near the ends the
+// range is the largest that fits on both sides.
 VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, CurveRecord before, int at,
                                            int images) {
     CurveStep step;
@@ -175,7 +176,7 @@ VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, 
     return step;
 }
 
-// Local maxima that stand at least half as high above the curve's mean as the largest, counted to 4.
+// Number of local maxima that stand at least half as high above the curve's mean as the largest, at most 4.
 VKFV_FUNCTION int count_peaks(CurveRecord curve, int images) {
     real mean = quotient(curve.sum, real(images));
     real least = mean + real(0.5) * (curve.largest - mean);
@@ -183,8 +184,8 @@ VKFV_FUNCTION int count_peaks(CurveRecord curve, int images) {
            (curve.peak_4 >= least ? 1 : 0);
 }
 
-// How much of all that a curve rises and falls its largest maximum accounts for: 1 of a curve that rises to it and
-// falls from it, whatever its form and width; of values in random order, or of noise, little.
+// The share of the curve's total variation that its largest maximum accounts for: 1 for a curve that rises to it and
+// falls from it, whatever its form and width; little for values in random order or noise.
 VKFV_FUNCTION real unimodality(CurveRecord curve) {
     return curve.variation > real(0.0)
                ? quotient(real(2.0) * curve.highest - curve.first - curve.latest, curve.variation)
@@ -196,11 +197,11 @@ VKFV_FUNCTION real variance_about(real sum, real squares, int images) {
     return max(real(0.0), quotient(squares, real(images)) - mean * mean);
 }
 
-// How much of an order a curve shows: its unimodality; times its standard deviation over that of single images, which
-// no order changes, since what is alike from image to image outlasts averages along z, and noise or texture that comes
-// and goes does not; times exp(c), where c is the single images' serial correlation over one to three images (J. von
+// Measure of order in a curve. It is the product of its unimodality; of its standard deviation over that of single
+// images, which no order changes, since persistent structure outlasts averages along z, and noise or texture that comes
+// and goes does not; and of exp(c), where c is the single images' serial correlation over one to three images (J. von
 // Neumann, "Distribution of the ratio of the mean square successive difference to the variance", 1941) with weights 1,
-// 0.8 and 0.5. What values in random order reach, the stack itself tells.
+// 0.8 and 0.5. The threshold for random order is found from the stack itself.
 VKFV_FUNCTION real order_shown(CurveRecord curve, SingleRecord single, int images) {
     real variance = variance_about(single.sum, single.squares, images);
     if (!(variance > real(0.0))) {
@@ -214,8 +215,8 @@ VKFV_FUNCTION real order_shown(CurveRecord curve, SingleRecord single, int image
     return unimodality(curve) * root(quotient(averaged, variance)) * exponential(correlation);
 }
 
-// The share of an image in a pixel of the all-in-focus image: of the two images around the place, linear between them,
-// so that no seam shows where the nearest image changes.
+// The weight of an image in a pixel of the all-in-focus image: the two images around the place count, linear between
+// them, so that no seam shows where the nearest image changes.
 VKFV_FUNCTION real share_in_focus(real place, int image) {
     return max(real(0.0), real(1.0) - abs(place - real(image)));
 }

@@ -1,4 +1,5 @@
-// What the kernels of the evaluation begin with: an invocation a pixel, workgroups in rows where one row holds too few.
+// The kernels of the evaluation include this file first. An invocation takes a pixel; workgroups stand in rows where
+// one row holds too few.
 #extension GL_EXT_scalar_block_layout : require
 #include "physics/lang.glsl"
 #include "focus/arithmetic.glsl"

@@ -2,11 +2,11 @@
 // folder as vkfv::focus::f64 (double, the reference) and vkfv::focus::f32 (float, to the device's bits; its callers are
 // compiled without contraction).
 //
-// A scene, handed to the functions that take one, has what they need of:
+// A scene, handed to the functions that take one, has the members that they use of:
 //   real image_value(int channel, int column, int row) const;
 //   real window_weight(int distance) const;                         distance 0 ... window_radius
 //   WindowSums window_source(int field, int column, int row) const; level and response of a field (window.glsl)
-//   WindowSums window_row(int field, int column, int row) const;    what window_along_row() gave there
+//   WindowSums window_row(int field, int column, int row) const;    result of window_along_row() at this pixel
 //   real curve_value(int image) const;
 //   real joint_value(int image) const;                              see CurveRecord (records.glsl)
 //   real alone_value(int image) const;
@@ -28,7 +28,7 @@
     using glm::floor; \
     using glm::max; \
     using glm::min;
-// The names of a namespace, for what is written once for both.
+// The types of a namespace, for templates that serve both.
 #define VKFV_FOCUS_ARITHMETIC \
     struct Arithmetic { \
         using Real = real; \

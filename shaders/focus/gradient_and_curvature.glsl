@@ -1,7 +1,8 @@
 // Gradient and curvature: first differences along x and y as Sobel's operators take them, with second differences of
-// the same weights across at half their energy. First differences pass what the optics resolve best and little of a
-// camera's noise, second differences finer texture, of which a window has more grains. It is gathered as a magnitude,
-// in which a bright grain counts less than in an energy: a window's height is then nearer to that of its whole surface.
+// the same weights across at half their energy. First differences pass frequencies that the optics resolve best and
+// little of a camera's noise, second differences finer texture, of which a window has more grains. The response is
+// gathered as a magnitude, in which a bright grain counts less than in an energy: a window's height is then nearer to
+// that of its whole surface.
 
 VKFV_SCENE_FUNCTION real gradient_and_curvature_energy(VKFV_SCENE_PARAMETER FocusPlan plan, int channel, int column,
                                                        int row) {

@@ -2,7 +2,7 @@
 
 struct PeakFit {
     real offset;
-    bool found; // there is a maximum, within the range
+    bool found; // true: there is a maximum within the range
 };
 
 #ifdef __cplusplus
@@ -32,10 +32,10 @@ VKFV_FUNCTION PeakFit no_peak() {
     return fit;
 }
 
-// Where a Gaussian through the points (-1, before), (0, at), (1, after) has its maximum:
+// The offset of the maximum of a Gaussian through the points (-1, before), (0, at), (1, after),
 //   (ln before - ln after) / (2 (ln before - 2 ln at + ln after)),
-// exact for a Gaussian. None unless all three are positive and `at` is no smaller than its neighbours and larger than
-// one of them.
+// which is exact for a Gaussian. There is none unless all three are positive and `at` is no smaller than its neighbours
+// and larger than one of them.
 VKFV_FUNCTION PeakFit gaussian_peak(real before, real at, real after) {
     PeakFit fit = no_peak();
     if (before > real(0.0) && after > real(0.0) && at >= before && at >= after) {
@@ -49,7 +49,7 @@ VKFV_FUNCTION PeakFit gaussian_peak(real before, real at, real after) {
     return fit;
 }
 
-// The same of a parabola: (before - after) / (2 (before - 2 at + after)).
+// The offset of the maximum of a parabola through three points: (before - after) / (2 (before - 2 at + after)).
 VKFV_FUNCTION PeakFit parabola_peak(real before, real at, real after) {
     PeakFit fit = no_peak();
     real curvature = (before - at) + (after - at);
@@ -73,9 +73,9 @@ struct ParabolaFit {
     real bend;
 };
 
-// Of the values themselves with equal weights; logarithmic: of their logarithms over the largest's, each weighted by
-// the square of the value (H. Guo, "A simple algorithm for fitting a Gaussian function", 2011), since the logarithm's
-// noise is that of the value over the value.
+// Weight and value of a point in the fit. The parabola is fitted to the values with equal weights or, if `logarithmic`,
+// to the logarithms of their ratios to the largest, weighted by the square of the value (H. Guo, "A simple algorithm
+// for fitting a Gaussian function", 2011), since the logarithm's noise is that of the value over the value.
 VKFV_SCENE_FUNCTION real fit_weight(VKFV_SCENE_PARAMETER int at, int step, bool logarithmic) {
     real ratio = quotient(curve_value(VKFV_SCENE at + step), curve_value(VKFV_SCENE at));
     return logarithmic ? (ratio > real(0.0) ? ratio * ratio : real(0.0)) : real(1.0);
@@ -84,7 +84,7 @@ VKFV_SCENE_FUNCTION real fit_weight(VKFV_SCENE_PARAMETER int at, int step, bool 
 VKFV_SCENE_FUNCTION real fit_value(VKFV_SCENE_PARAMETER int at, int step, bool logarithmic) {
     real value = curve_value(VKFV_SCENE at + step);
     real largest = curve_value(VKFV_SCENE at);
-    return logarithmic ? (value > real(0.0) ? log_ratio(value, largest) : real(0.0)) // of weight 0
+    return logarithmic ? (value > real(0.0) ? log_ratio(value, largest) : real(0.0)) // its weight is 0
                        : quotient(value - largest, largest);
 }
 
@@ -140,8 +140,9 @@ VKFV_FUNCTION PeakFit fitted_peak(ParabolaFit parabola, int range) {
     return fit;
 }
 
-// Of what stands above the smallest value in the range, so that a pedestal does not draw it to the middle. A symmetric
-// range around the largest value still draws it there by what it cuts off: choose one that reaches the curve's feet.
+// The centre of gravity of the values minus the smallest in the range, so that a pedestal does not draw it to the
+// middle. A symmetric range around the largest value still draws it there by the parts it cuts off: choose one that
+// reaches the curve's feet.
 VKFV_SCENE_FUNCTION PeakFit centre_of_gravity(VKFV_SCENE_PARAMETER int at, int range) {
     real floor_value = curve_value(VKFV_SCENE at);
     for (int x = -range; x <= range; ++x) {
@@ -184,8 +185,8 @@ VKFV_SCENE_FUNCTION PeakFit locate_peak(VKFV_SCENE_PARAMETER FocusPlan plan, int
     return fit;
 }
 
-// RMS distance of the values from the least-squares Gaussian over the range, in units of the largest: how unlike a
-// single peak the curve is, the same number whatever the method.
+// RMS distance of the values from the least-squares Gaussian over the range, in units of the largest: a measure of how
+// little the curve resembles a single peak, the same number whatever the method.
 VKFV_SCENE_FUNCTION real gaussian_residual(VKFV_SCENE_PARAMETER int at, int range) {
     real largest = curve_value(VKFV_SCENE at);
     if (range < 1 || !(curve_value(VKFV_SCENE at - 1) > real(0.0)) || !(curve_value(VKFV_SCENE at + 1) > real(0.0))) {

@@ -1,4 +1,4 @@
-// Up to MOST_PLANES planes of values that a kernel reads: images, or curves' values.
+// The planes of values that a kernel reads, at most MOST_PLANES: images, or curves' values.
 layout(set = 0, binding = BINDING_PLANE + 0, scalar) readonly buffer Plane0 { float plane_0[]; };
 layout(set = 0, binding = BINDING_PLANE + 1, scalar) readonly buffer Plane1 { float plane_1[]; };
 layout(set = 0, binding = BINDING_PLANE + 2, scalar) readonly buffer Plane2 { float plane_2[]; };

@@ -1,4 +1,5 @@
-// Records of the evaluation of focus stacks that host and device share, in scalar layout, and its choices by number.
+// Records of the evaluation of focus stacks that host and device share, in scalar layout, and the numbers of its
+// choices.
 
 const int FOCUS_STANDARD_DEVIATION = 0;
 const int FOCUS_TENENGRAD = 1;
@@ -30,21 +31,21 @@ struct FocusPlan {
     VKFV_FOCUS_PLAN_FIELDS(VKFV_DECLARE)
 };
 
-// What is left of a pixel's focus curve once it has passed by. Values of the curve are dimensionless.
+// The summary of a pixel's focus curve, updated image by image. Values of the curve are dimensionless.
 #define VKFV_CURVE_RECORD_FIELDS(FIELD) \
     FIELD(real, largest) \
-    FIELD(real, sum)      /* of all values */ \
+    FIELD(real, sum)      /* sum of all values */ \
     FIELD(real, offset)   /* of the maximum, in steps from the image `at` */ \
     /* RMS distance from a Gaussian over the range, in units of the largest value */ \
     FIELD(real, residual) \
-    FIELD(real, bend)     /* how much larger the largest value is than the mean of both its neighbours, twice */ \
+    FIELD(real, bend)     /* twice the largest value, minus the values of both its neighbours */ \
     FIELD(int, at)        /* image of the largest value; the first of equals */ \
     FIELD(int, found)     /* 1: the method finds a maximum there */ \
-    FIELD(real, first)     /* value */ \
-    FIELD(real, squares)   /* of differences from it */ \
-    FIELD(real, latest)    /* value */ \
+    FIELD(real, first)     /* first value */ \
+    FIELD(real, squares)   /* sum of squared differences from the first value */ \
+    FIELD(real, latest)    /* latest value */ \
     FIELD(real, variation) /* sum of the steps from value to value, up or down */ \
-    FIELD(real, highest)   /* value */ \
+    FIELD(real, highest)   /* largest value so far */ \
     FIELD(real, valley)    /* the smallest value since the largest */ \
     FIELD(real, rival)     /* how far the curve falls and rises again, at most: prominence of the second maximum */ \
     FIELD(real, peak_1)   /* the largest local maxima (is_local_maximum()) in descending order */ \
@@ -55,28 +56,28 @@ struct FocusPlan {
     FIELD(real, joint) \
     FIELD(real, alone) \
     FIELD(real, joint_squares) /* sum of the squares of joint_value() over all images */ \
-    FIELD(real, alone_sum)     /* of alone_value() over all images */
+    FIELD(real, alone_sum)     /* sum of alone_value() over all images */
 // Texture stays from image to image, and its measure is the same whether images are averaged before or after it is
-// taken. Noise differs from image to image, and averaging the images before takes it off, however its strength changes
+// taken. Noise differs from image to image, and averaging the images before removes it, however its strength changes
 // along z. So two values of every image are compared: joint_value(), the focus measure of the mean of the images around
 // it, and alone_value(), the mean square of those images' own focus measures.
 struct CurveRecord {
     VKFV_CURVE_RECORD_FIELDS(VKFV_DECLARE)
 };
 
-// The same of the curve of single images, before any average along z.
+// The summary of the curve of single images, before any average along z.
 #define VKFV_SINGLE_RECORD_FIELDS(FIELD) \
-    FIELD(real, first)   /* value, which the sums are of differences from */ \
+    FIELD(real, first)   /* first value; sums are of differences from it */ \
     FIELD(real, sum) \
     FIELD(real, squares) \
     FIELD(real, before_1) /* the last values, the latest first */ \
     FIELD(real, before_2) \
     FIELD(real, before_3) \
-    FIELD(real, steps_1)  /* sum of squared differences between a value and the next, */ \
-    FIELD(real, steps_2)  /*   the one after that */ \
-    FIELD(real, steps_3)  /*   and the third */ \
+    FIELD(real, steps_1)  /* sum of squared differences between values one image apart */ \
+    FIELD(real, steps_2)  /* two images apart */ \
+    FIELD(real, steps_3)  /* three images apart */ \
     FIELD(real, highest) \
-    FIELD(real, valley)  /* as above */ \
+    FIELD(real, valley)  /* the smallest value since the largest */ \
     FIELD(real, rival)
 struct SingleRecord {
     VKFV_SINGLE_RECORD_FIELDS(VKFV_DECLARE)

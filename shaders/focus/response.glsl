@@ -1,9 +1,9 @@
-// What a focus measure finds at one pixel, before it is gathered over the window. The energies (squared responses) of
-// all channels are added. Some measures are sums of magnitudes, so the root is taken at the pixel; all others are
+// The response of a focus measure at one pixel, before it is gathered over the window. The energies (squared responses)
+// of all channels are added. Some measures are sums of magnitudes, so the root is taken at the pixel; all others are
 // energies, and the root is taken after the window. The standard deviation has no response of its own: it is made in
 // the window (standard_deviation.glsl).
 
-// Whether the window adds magnitudes.
+// True if the window adds magnitudes.
 VKFV_FUNCTION bool focus_adds_magnitudes(int measure) {
     return measure == FOCUS_MODIFIED_LAPLACIAN || measure == FOCUS_GRADIENT_AND_CURVATURE;
 }
@@ -27,8 +27,9 @@ VKFV_SCENE_FUNCTION real focus_response(VKFV_SCENE_PARAMETER FocusPlan plan, int
     return focus_adds_magnitudes(plan.measure) ? root(energy) : energy;
 }
 
-// False: the window makes the measure of the channels alone.
+// False if the window alone makes the measure from the channels.
 VKFV_FUNCTION bool focus_responds(FocusPlan plan) { return plan.measure != FOCUS_STANDARD_DEVIATION; }
 
-// Fields that the window gathers apart: each channel for the standard deviation, else the response of all channels.
+// Number of fields that the window gathers apart: each channel for the standard deviation, else the response of all
+// channels.
 VKFV_FUNCTION int focus_fields(FocusPlan plan) { return focus_responds(plan) ? 1 : plan.channels; }

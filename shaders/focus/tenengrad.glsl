@@ -1,5 +1,5 @@
-// Tenengrad: the squared gradient by Sobel's operators. J. M. Tenenbaum, "Accommodation in computer vision", 1970;
-// E. Krotkov, "Focusing", 1987. No threshold: the noise of a pixel is judged on its whole curve.
+// Tenengrad: the squared gradient by Sobel's operators. J. M. Tenenbaum, "Accommodation in computer vision", 1970; E.
+// Krotkov, "Focusing", 1987. There is no threshold, since the noise of a pixel is judged on its whole curve.
 
 VKFV_SCENE_FUNCTION real tenengrad_energy(VKFV_SCENE_PARAMETER FocusPlan plan, int channel, int column, int row) {
     real along_x = real(0.0);

@@ -1,9 +1,9 @@
-// From responses to the measure: weighted means over the window, first along rows, then along columns, cut off at the
-// border. The standard deviation (standard_deviation.glsl) is gathered with them.
+// The focus measure from the responses: weighted means over the window, first along rows, then along columns, cut off
+// at the border. The standard deviation (standard_deviation.glsl) is gathered with them.
 
 struct WindowSums {
     real level;  // mean brightness
-    real energy; // mean response; standard deviation: variance
+    real energy; // mean response; for the standard deviation: variance
 };
 
 #ifdef __cplusplus
@@ -11,12 +11,12 @@ template <class Scene>
 real window_weight(const Scene& scene, int distance) {
     return scene.window_weight(distance);
 }
-// Of a field at a pixel: brightness (standard deviation: the channel) and response.
+// Brightness (for the standard deviation: of the channel) and response of a field at a pixel.
 template <class Scene>
 WindowSums window_source(const Scene& scene, int field, int column, int row) {
     return scene.window_source(field, column, row);
 }
-// What window_along_row() gave there.
+// The result of window_along_row() at this pixel.
 template <class Scene>
 WindowSums window_row(const Scene& scene, int field, int column, int row) {
     return scene.window_row(field, column, row);
@@ -79,8 +79,9 @@ VKFV_SCENE_FUNCTION WindowSums window_along_column(VKFV_SCENE_PARAMETER FocusPla
     return sums;
 }
 
-// The measure at a pixel: the root of the mean energy, over brightness, so that a slowly varying illumination cancels.
-// C channels of the same grey give what one gives: their energy is C times as large, and so is C brightness^2.
+// The focus measure at a pixel: the root of the mean energy over brightness, so that a slowly varying illumination
+// cancels. C channels of the same grey give the value of one: their energy is C times as large, and so is C
+// brightness^2.
 VKFV_SCENE_FUNCTION real focus_value(VKFV_SCENE_PARAMETER FocusPlan plan, int column, int row) {
     int fields = focus_fields(plan);
     real level = real(0.0);

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Backward paths: an invocation takes some points of one pixel's lattice, so no two share what they sum in registers.
-// The sums are added up as integers, whose order does not matter: the same bits for any batch. Before the includes,
-// which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
+// Backward paths: an invocation takes some points of one pixel's lattice, so no two share the sums that they keep in
+// registers. The sums are added up as integers, whose order does not matter: the same bits for any batch. The layout
+// stands before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
@@ -15,19 +15,19 @@ layout(set = 0, binding = BINDING_BACKWARD, scalar) uniform Backward { BackwardB
 
 layout(push_constant, scalar) uniform Push { BackwardBatch batch; };
 
-// Of BackwardOptics: loops of known length.
+// Fields of BackwardOptics as constants, so that loops have a known length.
 layout(constant_id = CONSTANT_CONE_CANDIDATES) const uint cone_candidates = 1u;
 layout(constant_id = CONSTANT_LOBE_CANDIDATES) const uint lobe_candidates = 0u;
 layout(constant_id = CONSTANT_SURE_CANDIDATES) const uint sure_candidates = 1u;
 layout(constant_id = CONSTANT_RIM_PERIOD) const uint rim_period = 0u;
 
-// What only tracing can tell is kept until a lane has no room for more, or no more to come: few directions lie at the
-// rim of the source's cone, and lanes that wait for each one's neighbour would trace for all.
+// Source queries that only tracing can answer are kept until a lane has no room for more, or no more to come: few
+// directions lie at the rim of the source's cone, and lanes that wait for each one's neighbour would trace for all.
 layout(constant_id = CONSTANT_QUERY_CAPACITY) const uint query_capacity =
-    12u; // more than a path asks: once at each bounce, and at its end
+    12u; // more than a path asks: one at each bounce, and one at its end
 SourceQuery queries[query_capacity];
 uint query_count = 0u;
-// With pupil cells: the address that the light of the path under way, and of each query, is added at.
+// The addresses at which the light of the path under way, and of each query, is added; used with pupil cells.
 uint64_t path_cell = uint64_t(0);
 uint64_t query_cells[query_capacity];
 
@@ -44,7 +44,7 @@ uint64_t in_units(real value) { return uint64_t(value * BACKWARD_UNIT + real(0.5
 
 void main() {
     uint pixel_count = uint(instrument.detector_columns * instrument.detector_rows);
-    // Workgroups stand in rows: a large detector has more than one row may hold.
+    // Workgroups stand in rows: a large detector needs more than one row may hold.
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     uint index = group * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (index < batch.chunks) {

@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_buffer_reference : require
-// From the numbers that were counted to an image: an invocation a pixel, workgroups in rows where one row holds too
+// Makes an image of the counted numbers: an invocation takes a pixel; workgroups stand in rows where one row holds too
 // few.
 #define VKFV_FUNCTION
 #define VKFV_PRECISE precise

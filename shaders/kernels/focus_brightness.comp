@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Adds an image to the sum that tells the stack's brightness.
+// Adds an image to the sum from which the stack's brightness is found.
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The window along columns, and the measure.
+// Gathers the window along columns, and makes the focus measure.
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Every pixel's curve, an image further.
+// Follows every pixel's curve by one image.
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"

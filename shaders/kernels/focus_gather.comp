@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The averaged curves' values at one image, of a few pixels.
+// Gathers the averaged curves' values at one image for a few pixels.
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Terms of a weighted mean of planes, one added after the other.
+// Adds the terms of a weighted mean of planes one after the other.
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Brightness and response of a focus measure at every pixel.
+// Computes brightness and response of a focus measure at every pixel.
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"

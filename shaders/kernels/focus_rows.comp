@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The window along rows: of the responses, for the standard deviation of the channels.
+// Gathers the window along rows: over the responses, or for the standard deviation over the channels.
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Takes over pixels whose focus lies beside these images: their shares of them.
+// Adds to the all-in-focus image those pixels whose focus lies beside these images, weighted by share_in_focus().
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Every pixel's curve of single images, an image further; and the square of its value.
+// Follows every pixel's curve of single images by one image, and stores the square of its value.
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // First half of the forward trace: source, illumination, specimen, gate. Light that passes is appended to the
-// survivors. Before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
+// survivors. The layout stands before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is
+// declared later.
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
@@ -9,11 +10,11 @@ layout(local_size_x = 128) in;
 #include "device/tally.glsl"
 #include "device/survivors.glsl"
 
-// Where the path ends early nothing is appended.
+// Stage after which paths end; if one ends early, nothing is appended.
 layout(constant_id = CONSTANT_STOP_AFTER) const uint stop_after = STOP_NOWHERE;
 
 // Survivors are gathered in shared memory and appended a workgroup at a time: one counter in the buffer would be the
-// busiest place of the trace. What does not fit is appended singly.
+// busiest place of the trace. Survivors that do not fit are appended singly.
 const uint KEPT_CAPACITY = 192u;
 shared Survivor kept[KEPT_CAPACITY];
 shared uint kept_count;
@@ -46,8 +47,8 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) {
         kept_count = 0u;
     }
-    tally_clear(); // with a barrier
-    // Consecutive paths, whose light is close together.
+    tally_clear(); // contains a barrier
+    // A workgroup takes consecutive paths, whose light is close together.
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     uint rounds = (batch.count + stride - 1u) / stride;
     for (uint round = 0u; round < rounds; ++round) {
@@ -61,7 +62,7 @@ void main() {
             if (stop_after == STOP_AFTER_SOURCE) {
                 Emission emission = emit_path(known_instrument(), exposure, path);
                 departure.fate = make_fate(PATH_ALIVE, -1);
-                // As below.
+                // This is never true; it keeps the compiler from dropping the timed code.
                 survives = emission.ray.position.x + emission.ray.position.y + emission.ray.direction.x +
                                emission.ray.direction.y + emission.ray.direction.z >
                            real(1e30);
@@ -70,7 +71,7 @@ void main() {
                                              emit_path(known_instrument(), exposure, path));
                 departure.fate = arrival.fate;
                 departure.survives = false;
-                // Never so far off; keeps the compiler from dropping what is timed.
+                // This is never true; it keeps the compiler from dropping the timed code.
                 survives = arrival.position.x + arrival.position.y + arrival.direction.z > real(1e30);
             } else {
                 departure = trace_to_departure(known_instrument(), known_specimen(), exposure, path);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Second half of the forward trace: whether the survivors meet the specimen again, the imaging train, the detector.
-// Before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
+// Second half of the forward trace: occlusion of the survivors by the specimen, the imaging train, the detector. The
+// layout stands before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
@@ -29,7 +29,7 @@ void main() {
         int pixel = detection.row * instrument.detector_columns + detection.column;
         uint weight = survivor_weight(survivors[index]);
         if (counted && weighted) {
-            // Beside the sum that of the squares, in 2^-24: both hold 1e11 rays of weight 1 on one pixel.
+            // The sum of squares follows the sum, in units of 2^-24: both hold 1e11 rays of weight 1 on one pixel.
             atomicAdd(pixels[2 * pixel], uint64_t(weight));
             atomicAdd(pixels[2 * pixel + 1], (uint64_t(weight) * uint64_t(weight)) >> 20);
         } else if (counted) {
@@ -40,7 +40,7 @@ void main() {
                            weighted ? uint64_t(weight) : uint64_t(1));
         }
         if (weighted && detection.fate.status == PATH_ALIVE) {
-            // The first half took it for counted.
+            // The first half counted this light in the path's square; it is taken off here.
             uint own = weight_beside(survivors[index]);
             atomicAdd(ledger_counts[2u * ledger_slots],
                       uint64_t(weight_square(own)) - uint64_t(weight_square(own + weight)));

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Non-sequential paths from the source to their ends.
-// Before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
+// The layout stands before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared
+// later.
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"

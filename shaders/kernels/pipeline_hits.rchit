@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The hit of the primitive that the device has found to be the nearest.
+// Computes the hit of the primitive that the device has found to be the nearest.
 #include "device/kernel.glsl"
 
 layout(location = 0) rayPayloadInEXT Hit met;
-hitAttributeEXT vec2 barycentrics; // of triangles
+hitAttributeEXT vec2 barycentrics; // barycentrics of a triangle; not used for boxes
 
 void main() {
     uint primitive = uint(gl_PrimitiveID);

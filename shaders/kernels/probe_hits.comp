@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Rays to meetings with the specimen, one by one: what tests compare and benchmarks of a traversal time.
+// Finds the meetings of given rays with the specimen: tests compare them, benchmarks of a traversal time them.
 #include "device/kernel.glsl"
 
 layout(local_size_x = 64) in;

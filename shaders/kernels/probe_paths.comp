@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Every path of a batch by itself: how and where it ended. Tests compare it with the host's reference.
+// Records how and where every path of a batch ended. Tests compare this with the host's reference.
 #include "device/kernel.glsl"
 #ifndef VKFV_NONSEQUENTIAL
 #include "device/emission_cell.glsl"

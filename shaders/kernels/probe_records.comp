@@ -54,7 +54,7 @@ void echo(PupilCells record) { VKFV_PUPIL_CELLS_FIELDS(VKFV_ECHO) }
 void echo(Survivor record) { VKFV_SURVIVOR_FIELDS(VKFV_ECHO) }
 
 void main() {
-    // Of arrays the last of three, so that the stride is seen too.
+    // The last of three elements is read of arrays, so that the stride is tested too.
     echo(surfaces[2]);
     echo(instrument);
     echo(specimen);

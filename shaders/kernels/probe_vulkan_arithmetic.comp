@@ -1,5 +1,6 @@
-// What every kernel relies on: specialization and push constants, 64-bit integers and atomics, uniforms, device
-// addresses, scalar layout, subgroup operations. Invocation i of `count` writes offset + base + factor * i.
+// Tests the features that every kernel relies on: specialization and push constants, 64-bit integers and atomics,
+// uniforms, device addresses, scalar layout, subgroup operations. Invocation i of `count` writes offset + base + factor
+// * i.
 #version 460
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
@@ -23,10 +24,10 @@ push;
 layout(set = 0, binding = 0, scalar) uniform Offset { uint64_t offset; };
 
 layout(set = 0, binding = 2, scalar) buffer Sums {
-    uint64_t of_values;    // added to by every invocation
+    uint64_t of_values;    // every invocation adds to it
     uint of_invocations;   // counted by ballot, a subgroup at a time
     uint of_indices;       // summed by subgroup arithmetic
-    uint length_of_padded; // of the array below, as the device sees it
+    uint length_of_padded; // length of the array below, as the device sees it
 };
 
 layout(set = 0, binding = 5, scalar) readonly buffer Padded { vec3 padded[]; };

@@ -1,4 +1,4 @@
-// Nearest hits of given rays: triangles, and spheres that fill the boxes of a procedural geometry.
+// Finds the nearest hits of given rays with triangles, and with spheres that fill the boxes of a procedural geometry.
 #version 460
 #extension GL_EXT_ray_query : require
 #extension GL_EXT_scalar_block_layout : require
@@ -16,14 +16,14 @@ struct Sphere {
     float radius;
 };
 struct Hit {
-    float t; // negative: none
+    float t; // negative: no hit
     uint primitive;
     uint candidates; // boxes that the traversal offered
 };
 
 layout(push_constant, scalar) uniform Push {
     uint count;
-    uint flags; // of the ray query
+    uint flags; // flags of the ray query
 }
 push;
 
@@ -45,7 +45,8 @@ void main() {
     while (rayQueryProceedEXT(query)) {
         ++hit.candidates;
         Sphere sphere = spheres[rayQueryGetIntersectionPrimitiveIndexEXT(query, false)];
-        // From the foot of the perpendicular: the difference of large squares would cost half the digits.
+        // The root is taken from the foot of the perpendicular: a difference of large squares would cost half the
+        // digits.
         vec3 to_centre = sphere.centre - ray.origin;
         float along = dot(to_centre, ray.direction);
         vec3 aside = to_centre - along * ray.direction;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Rays made on the device, met with the specimen and counted: what bench/hit_times.hpp times.
+// Makes rays on the device and counts their meetings with the specimen, for bench/hit_times.hpp to time.
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
@@ -38,13 +38,13 @@ void main() {
             TimedStart start = starts[index % uint(starts.length())];
             real z = real(2.0) * draws.u0 - real(1.0);
             real across = sqrt(real(1.0) - z * z);
-            // Just short of the sphere about the normal, so that none has no direction.
+            // The sphere is scaled to 0.999, so that no sum of normal and point is zero.
             direction = normalize(start.normal + real(0.999) * real3(across * cos(angle), across * sin(angle), z));
             origin = start.position;
         } else {
             real sine = timed.aperture * sqrt(draws.u0);
             direction = real3(sine * cos(angle), sine * sin(angle), -sqrt(real(1.0) - sine * sine));
-            // A stratum's 32 rays are a subgroup's.
+            // A subgroup takes the 32 rays of a stratum.
             uint stratum = index >> 5;
             uint mask = (1u << timed.strata_bits) - 1u;
             real side = real(1u << timed.strata_bits);
@@ -55,11 +55,11 @@ void main() {
         }
         Hit hit = specimen_hit(origin, direction);
         if (way == HITS_RECORD) {
-            // A ray that met nothing starts above everything.
+            // The start of a ray that met nothing is above everything.
             starts[index].position = hit.found == 1u ? scatter_origin(hit) : origin;
             starts[index].normal = hit.found == 1u ? hit.normal : real3(real(0.0), real(0.0), real(1.0));
         }
-        // Never so large; keeps the compiler from dropping what a path would use.
+        // This is never true; it keeps the compiler from dropping the position and normal that a path would use.
         bool used = hit.position.x + hit.position.y + hit.position.z + hit.normal.x + hit.normal.y > real(1e30);
         own += hit.found + (used ? 1u : 0u);
     }

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Given rays through one of the trains and on to a plane behind it: --trace-rays --precision float.
+// Traces given rays through one of the trains and on to a plane behind it: --trace-rays --precision float.
 #include "device/bindings.glsl"
 
 layout(local_size_x = 64) in;
@@ -10,7 +10,7 @@ layout(set = 0, binding = BINDING_FOUND, scalar) writeonly buffer TracedRays { T
 
 layout(push_constant, scalar) uniform Push { TrainPassage passage; };
 
-// The train alone is traced; the physics' other needs are met by nothing.
+// Only the train is traced; the functions that the physics needs besides do nothing.
 Hit specimen_hit(real3 origin, real3 direction) {
     Hit hit;
     hit.found = 0u;

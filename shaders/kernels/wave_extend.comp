@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The spectra of the filters' images with their mirror images, as seen from the middle of the first part. The images
-// are real: two of four become the real and the imaginary part of one plane.
+// Makes the spectra of the filters' images continued by their mirror images, with the phase of the middle of the first
+// part. The images are real, so two of four become the real and the imaginary part of one plane.
 layout(local_size_x = 128) in;
 
 #include "waves/device.glsl"
@@ -16,11 +16,11 @@ const uint planes = filters == 1u ? 1u : filters / 2u;
 void main() {
     uint period = 2u * size.columns;
     uint half_plane = size.rows * period;
-    uint which = invocation() / half_plane; // plane
+    uint which = invocation() / half_plane; // index of the plane
     uint place = invocation() % half_plane;
     if (which < planes) {
         uint column = place % period;
-        uint row = place / period; // the lower half; the rest are the conjugates of the opposite frequencies
+        uint row = place / period; // only the lower half; the rest are the conjugates of the opposite frequencies
         uint first = 2u * half_plane * which;
         uint nearest = column < size.columns ? column : period - column;
         vec2 real_part = vec2(0.0);
@@ -45,7 +45,7 @@ void main() {
             image[first + (2u * size.rows - row) * period + opposite] =
                 vec2(real_part.x + imaginary_part.y, imaginary_part.x - real_part.y);
         } else {
-            image[first + size.rows * period + column] = vec2(0.0); // the frequency of a half, which no pupil passes
+            image[first + size.rows * period + column] = vec2(0.0); // Nyquist frequency, which no pupil passes
         }
     }
 }

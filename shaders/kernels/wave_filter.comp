@@ -1,22 +1,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Adds to the image's spectrum that of groups of cells, each cell's by its own transfer function.
+// Adds the spectra of groups of cells to the image's spectrum, each cell's multiplied by its own transfer function.
 layout(local_size_x = 128) in;
 
 #include "waves/device.glsl"
 
 layout(set = 0, binding = WAVES_BINDING_PLANES, scalar) readonly buffer Planes { vec2 planes[]; };
-// One filter has a complex number at a node, four have four: the second name is for these, and reads them in two.
+// A node has one complex number for one filter and four for four filters; table_of_four reads the latter in two loads.
 layout(set = 0, binding = WAVES_BINDING_TABLE, scalar) readonly buffer Table { vec2 table[]; };
 layout(set = 0, binding = WAVES_BINDING_TABLE, scalar) readonly buffer TableOfFour { vec4 table_of_four[]; };
 layout(set = 0, binding = WAVES_BINDING_SPECTRUM, scalar) buffer Spectrum { vec4 spectrum[]; };
 layout(push_constant, scalar) uniform Push { WaveGroups groups; };
 layout(constant_id = WAVES_CONSTANT_FILTERS) const uint filters = 1u;
 
-// The four nodes about a place of a cell's table, x from -steps to steps, y from 0, and what each counts: between nodes
+// The four nodes about a place of a cell's table, x from -steps to steps, y from 0, and their weights: between nodes
 // the table is bilinear.
 struct Nodes {
-    int corner;   // left and low, of the first cell
+    int corner;   // first node: left and low, of the first cell
     vec4 weights; // left and low, right and low, left and above, right and above
 };
 
@@ -37,7 +37,7 @@ vec2 transfer(Nodes at, int cell) {
            at.weights.w * table[above + 1];
 }
 
-// A window of four filters keeps them in two pairs: this is the transfer of the filters of one pair.
+// A window of four filters keeps them in two pairs: this is the transfer function of the filters of one pair.
 vec4 transfer_of_two(Nodes at, int cell, uint pair) {
     int low = 2 * (at.corner + cell) + int(pair);
     int above = low + 4 * int(groups.steps) + 2;
@@ -45,7 +45,7 @@ vec4 transfer_of_two(Nodes at, int cell, uint pair) {
            at.weights.z * table_of_four[above] + at.weights.w * table_of_four[above + 2];
 }
 
-// Adds to the spectrum of each filter's image that of a cell, by the cell's transfer function: at a frequency (in the
+// Adds a cell's spectrum, multiplied by its transfer function, to that of each filter's image: at a frequency (in the
 // first two numbers) and at the frequency with the opposite x, which the cell's mirror image has there.
 void add(inout vec4 sums[filters], Nodes there, Nodes opposite, uint cell, vec2 light, vec2 light_opposite) {
     int first = int(cell) * (int(groups.steps) + 1) * (2 * int(groups.steps) + 1);
@@ -72,7 +72,7 @@ void main() {
     // rows and both: these four need the same numbers of the planes.
     uint lane = gl_LocalInvocationIndex % 32u;
     uint mirror = gl_LocalInvocationIndex / 32u;
-    uint blocks = groups.columns / 2u / 32u + 1u; // of the columns from 0 to the middle
+    uint blocks = groups.columns / 2u / 32u + 1u; // blocks of the columns from 0 to the middle
     uint block = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     uint column = block % blocks * 32u + lane;
     uint row = block / blocks;
@@ -93,7 +93,7 @@ void main() {
     if (dot(at, at) < float(groups.steps * groups.steps)) {
         uint left = column == 0u ? 0u : groups.columns - column;
         uint low = row == 0u ? 0u : groups.rows - row;
-        // From the first value's middle to the border.
+        // The phase shifts the origin from the first value's middle to the border.
         vec2 turn_column = turned(-0.5 * float(column) / float(groups.columns));
         vec2 turn_row = turned(-0.5 * float(row) / float(groups.rows));
         vec2 both = times(turn_column, turn_row);

@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Adds to the light of each pixel of a window what its filters count there: the sum of the pixel's parts, as far as
-// they are sensitive.
+// Adds the filters' light to each pixel of a window: the sum over the sensitive shares of the pixel's parts.
 layout(local_size_x = 128) in;
 
 #include "waves/device.glsl"
@@ -25,7 +24,7 @@ void main() {
         uint pixel = pixel_row * size.image_columns + pixel_column;
         float light = pixels[pixel];
         for (uint k = 0u; k < filters; ++k) {
-            uint first = k / 2u * 4u * size.columns * size.rows; // plane, of two filters
+            uint first = k / 2u * 4u * size.columns * size.rows; // two filters a plane
             float sum = 0.0;
             for (uint j = 0u; j < parts; ++j) {
                 for (uint i = 0u; i < parts; ++i) {

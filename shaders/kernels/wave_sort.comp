@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Of groups of cells that are mirror images of each other: the parts of their images whose mirror images continue them
-// evenly or oddly in either direction. Two of them as the real and the imaginary part of one plane (even in both and
+// Sorts the light of groups of cells that are mirror images of each other into parts whose mirror images continue them
+// evenly or oddly in either direction. Two parts become the real and the imaginary part of one plane (even in both and
 // odd in both; odd along rows and odd along columns), in the order in which a Fourier transform of the same length
 // becomes their cosine and sine transform (J. Makhoul, IEEE Trans. ASSP-28, 27, 1980): every other value from the
-// front, then the rest from the back, of sines with alternating sign.
+// front, then the rest from the back, with alternating sign for sines.
 layout(local_size_x = 128) in;
 
 #include "waves/device.glsl"
@@ -22,7 +22,7 @@ float light_at(uint cell, uint column, uint row) {
                      .light);
 }
 
-// The index, in the transform's order, of the value that stands at this place of a line.
+// The index, in the transform's order, of the value at the place `from` of a line.
 uint destination_of(uint from, uint length) { return from % 2u == 0u ? from / 2u : length - 1u - from / 2u; }
 
 void main() {

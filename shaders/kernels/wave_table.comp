@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Puts the transfer functions of the four filters of a window side by side: the filters are looked up at the same
-// places, and one place in memory then serves the four.
+// Puts the transfer functions of the four filters of a window side by side: all are looked up at the same nodes, and
+// one place in memory then serves the four.
 layout(local_size_x = 128) in;
 
 #include "waves/device.glsl"

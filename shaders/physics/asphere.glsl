@@ -1,7 +1,7 @@
 // The even asphere of ISO 10110-12: a conic and a polynomial in r^2.
 
 struct Sag {
-    bool defined;      // else r lies outside the conic
+    bool defined;      // false: r lies outside the conic
     real sag;          // mm
     real slope_over_r; // (1/r) d sag / d r, 1/mm
 };
@@ -39,8 +39,9 @@ const int ASPHERE_NEWTON_STEPS = 8;
 const int ASPHERE_NEWTON_STEPS = 4;
 #endif
 
-// Meeting with the surface, position and direction (of the given length) in its vertex frame. One flow for spheres,
-// conics and aspheres, the loops empty for spheres: software devices run both sides of a branch, but not an empty loop.
+// The meeting of a ray with the surface; position and direction (of the given length) in the surface's vertex frame.
+// Spheres, conics and aspheres take the same flow, with empty loops for spheres: software devices run both sides of a
+// branch, but not an empty loop.
 VKFV_FUNCTION SurfacePoint meet_surface(real3 position, real3 direction, real length_squared, Surface surface) {
     SurfacePoint result = meet_conic(position, direction, length_squared, surface.curvature, surface.conic);
     bool aspheric = (surface.flags & SURFACE_ASPHERIC) != 0u;

@@ -2,47 +2,47 @@
 // whose radiance they collect. Radiance is constant along a ray (times the transmittances; over the square of the
 // index, which is 1 at both ends), so a pixel's flux is
 //   Phi = L_source * integral over the pixel's area and the directions of  T cos(theta) dA domega,
-// T the share of the source's radiance that the specimen sends on: the integral of bsdf(in -> out) cos(theta_in) over
-// the directions in which the source is seen. A path's value is an unbiased estimate of T cos^4(theta) for directions
-// that are uniform over the exit pupil's disc, so that Phi is the mean value times L_source A_pixel (disc's area in
-// slopes).
+// where T is the share of the source's radiance that the specimen sends on: the integral of bsdf(in -> out)
+// cos(theta_in) over the directions in which the source is seen. A path's value is an unbiased estimate of T
+// cos^4(theta) for directions that are uniform over the exit pupil's disc, so that Phi is the mean value times L_source
+// A_pixel (disc's area in slopes).
 //
-// The Instrument is turned round: its illumination train leads from the detector to the specimen, its imaging train
-// from the specimen to the source, where the last surface is the source itself as a stop: optics::turned_round().
-// What may come from where is told by linear bounds: of a ray through the plane of the detector,
+// The Instrument is reversed (optics::turned_round()): its illumination train leads from the detector to the specimen,
+// its imaging train from the specimen to the source, where the last surface is the source itself as a stop. Linear
+// bounds say which rays can carry light. For a ray through the plane of the detector,
 //   |pupil_position * (x, y) + (dx/dz, dy/dz)| <= pupil_radius
-// in the reversed frame holds for all light from the specimen, and of one through the plane of the paraxial object
+// in the reversed frame holds for all light from the specimen, and for a ray through the plane of the paraxial object
 //   |source_position * (x, y) + (dx/dz, dy/dz)| <= source_outer
-// for all light from the source. What is within source_inner, from points within inner_field, is from it for sure.
-// A ring light's points are chosen themselves, as seen without a cover glass; over a glass the ring that is drawn is a
-// little larger, and only tracing tells what met the real one.
+// for all light from the source. A ray within source_inner, from a point within inner_field, is from the source for
+// sure. Points of a ring light are drawn directly, as seen without a cover glass; over a glass the drawn ring is a
+// little larger, and only tracing shows which rays meet the real one.
 // clang-format off
 #define VKFV_BACKWARD_OPTICS_FIELDS(FIELD) \
     FIELD(real, pupil_position) \
     FIELD(real, pupil_radius) \
     FIELD(real, source_position) \
     FIELD(real, source_outer) \
-    FIELD(real, source_inner)    /* 0: nothing is sure */ \
+    FIELD(real, source_inner)    /* 0: no point sees the source for sure */ \
     FIELD(real, inner_field)     /* mm */ \
     /* mm, from the objective's front vertex or cover glass to the paraxial object; of a ring light: to its aim */ \
     FIELD(real, object_distance) \
-    FIELD(RingLight, ring)       /* as it is drawn */ \
-    FIELD(real, ring_area)       /* mm^2, of it */ \
-    FIELD(real, ring_cosine)     /* between light and the band's normal, at least */ \
-    FIELD(uint, ring_is_bare)    /* 1: what is drawn is what shines */ \
+    FIELD(RingLight, ring)       /* ring light that directions are drawn on */ \
+    FIELD(real, ring_area)       /* mm^2, of the drawn ring */ \
+    FIELD(real, ring_cosine)     /* least cosine between light and the band's normal */ \
+    FIELD(uint, ring_is_bare)    /* 1: the drawn ring is the real one */ \
     FIELD(uint, cone_candidates) /* directions towards the source that each scatter event weighs against each other */ \
     FIELD(uint, lobe_candidates) /* directions of the lobe besides, 0 or 1 */ \
-    FIELD(uint, sure_candidates) /* cone_candidates of what is seen for sure, where the rim is looked at by itself */ \
-    FIELD(uint, rim_period)      /* a power of 2: every which path looks at the source's rim; 0: it is not told apart */
+    FIELD(uint, sure_candidates) /* cone_candidates for the part seen for sure, where the rim is sampled by itself */ \
+    FIELD(uint, rim_period)      /* a power of 2: one in so many paths samples the source's rim; 0: not apart */
 struct BackwardOptics {
     VKFV_BACKWARD_OPTICS_FIELDS(VKFV_DECLARE)
 };
 // clang-format on
 
-// Dimensions of the lattice: pixel 0 and 1, pupil 2 and 3, direction to the source 4 and 5 (to its rim: two of their
-// own), choice among candidates 6, wavelength 7. What comes after the first scatter event is drawn from Philox.
+// The lattice's dimensions: pixel 0 and 1, pupil 2 and 3, direction to the source 4 and 5 (for its rim two others),
+// choice among candidates 6, wavelength 7. Draws after the first scatter event are from Philox.
 
-// Light that is looked for backward, where it leaves the specimen.
+// Light that is traced backward from the detector, at the specimen's top plane.
 struct BackwardArrival {
     uint status;
     real weight;     // cos^4 at the detector times the transmittance
@@ -51,12 +51,12 @@ struct BackwardArrival {
     Light light;
 };
 
-// x, y: of the detector's plane, as Detection has them, mm. pupil: a point of the unit disc.
+// x, y: position on the detector's plane as in Detection, mm. pupil: a point of the unit disc.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION BackwardArrival look_from_detector(VKFV_SCENE_PARAMETER Instrument instrument,
                                                                      BackwardOptics backward, SpecimenRecord specimen,
                                                                      Exposure exposure, real x, real y, real2 pupil,
                                                                      Light light) {
-    // The reversed frame is the detector's turned half a turn about x.
+    // The reversed frame is the detector's turned by half a turn about x.
     real2 slope = real2(backward.pupil_radius * pupil.x - backward.pupil_position * x,
                         backward.pupil_radius * pupil.y + backward.pupil_position * y);
     real axial_squared = real(1.0) / (real(1.0) + slope.x * slope.x + slope.y * slope.y);
@@ -79,24 +79,24 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION BackwardArrival look_from_detector(VKFV_SCENE_
     return arrival;
 }
 
-// Height of the paraxial object plane, or of what a ring light aims at, in the specimen frame, mm.
+// Height of the paraxial object plane, or of a ring light's aim, in the specimen frame, mm.
 VKFV_FUNCTION real object_plane(BackwardOptics backward, SpecimenRecord specimen, Exposure exposure) {
     return specimen.top + exposure.top_distance - backward.object_distance;
 }
 
-// A ray from the specimen that may come from the source, and what it would bring.
+// A ray from the specimen towards the source, and the light that it brings if it comes from there.
 struct SourceQuery {
     real3 position;  // specimen frame
     real3 direction; // unit, towards the source
-    real weight;     // of the source's radiance
+    real weight;     // factor of the source's radiance
     Light light;
 };
 
 const uint SOURCE_HIDDEN = 0u;
 const uint SOURCE_SEEN = 1u;
-const uint SOURCE_UNKNOWN = 2u; // only tracing can tell
+const uint SOURCE_UNKNOWN = 2u; // only tracing shows it
 
-// What of a ring light a ray meets, as it is drawn.
+// The point of the drawn ring light that a ray meets.
 VKFV_FUNCTION RingMeeting meet_drawn_ring(BackwardOptics backward, real plane, real3 position, real3 direction) {
     RingMeeting meeting = meet_ring(backward.ring, real3(position.x, position.y, position.z - plane), direction);
     meeting.found = meeting.found && meeting.cosine >= backward.ring_cosine;
@@ -119,7 +119,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION uint source_certainty(VKFV_SCENE_PARAMETER Bac
     return !possible ? SOURCE_HIDDEN : sure ? SOURCE_SEEN : SOURCE_UNKNOWN;
 }
 
-// The weight times the transmittance of the way from the source.
+// The weight times the transmittance from the source to the specimen, 0 if the ray does not meet the source.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_to_source(VKFV_SCENE_PARAMETER Instrument instrument,
                                                        SpecimenRecord specimen, Exposure exposure, SourceQuery query) {
     real rise = rise_to_top(specimen, exposure, query.position.z) / query.direction.z;
@@ -139,14 +139,14 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_to_source(VKFV_SCENE_PARAMETER Inst
         real emission_cosine = sqrt(max(real(1.0) - instrument.emission_sine * instrument.emission_sine, real(0.0)));
         arrives = meeting.found && meeting.cosine >= emission_cosine;
     } else if (arrives && (features(VKFV_SCENE_ALONE) & FEATURE_RECTANGLE) != 0u) {
-        // The last surface is the circle about it. Its frame is the source's turned half a turn about x.
+        // The last surface is the circle about the rectangle. Its frame is the source's turned by half a turn about x.
         arrives = abs(train.ray.position.x) <= instrument.source_half_width &&
                   abs(train.ray.position.y) <= instrument.source_half_height;
     }
     return arrives ? query.weight * train.transmitted : real(0.0);
 }
 
-// What is unknown may be traced at once or kept for later, when more of it is at hand: gives what is added now.
+// Answers a query that only tracing can decide, at once or later with others; returns the value to add now.
 #ifdef __cplusplus
 template <class Scene>
 real ask_source(const Scene& scene, Instrument instrument, SpecimenRecord specimen, Exposure exposure,
@@ -168,14 +168,14 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real collect(VKFV_SCENE_PARAMETER Instrument i
     return value;
 }
 
-// A candidate for a connection: a direction towards the source, and how densely such are drawn over solid angle.
+// A candidate for a connection: a direction towards the source, and the density of such directions per solid angle.
 struct Candidate {
     bool usable;
     real3 direction;
-    real density; // of one of the candidates of the source
+    real density; // per sr, of one of the candidates drawn on the source
 };
 
-// Part of the paraxial source as a point sees it: a disc of slopes, or what of it is outside an inner one.
+// Part of the paraxial source as seen from a point: a disc of slopes, or a ring of them around an inner disc.
 struct SeenPart {
     real2 centre;
     real inner;
@@ -190,7 +190,8 @@ VKFV_FUNCTION SeenPart seen_whole(BackwardOptics backward, real plane, real3 pos
     return whole;
 }
 
-// Radius of what a point sees for sure: of its directions all cross the object plane within the inner field; else 0.
+// Radius of the part of the source that the point sees for sure, if all its directions cross the object plane within
+// the inner field; else 0.
 VKFV_FUNCTION real sure_radius(BackwardOptics backward, real plane, real3 position, SeenPart whole) {
     real rise = plane - position.z;
     real radius = whole.outer * (backward.source_inner / backward.source_outer);
@@ -207,7 +208,7 @@ VKFV_FUNCTION Candidate in_part(SeenPart part, real3 direction) {
     Candidate candidate;
     candidate.direction = direction;
     candidate.usable = direction.z > real(0.0) && apart_squared <= outer_squared && apart_squared >= inner_squared;
-    // domega = cos^3 of the slopes' area.
+    // The solid angle is cos^3 times the area in slopes.
     candidate.density = real(1.0) / (real(3.14159265358979324) * (outer_squared - inner_squared) * direction.z *
                                      direction.z * direction.z);
     return candidate;
@@ -220,7 +221,7 @@ VKFV_FUNCTION Candidate draw_in_part(SeenPart part, real u0, real u1) {
     real2 slope = part.centre + real2(turn.cosine, turn.sine) * rho;
     Candidate candidate =
         in_part(part, real3(slope.x, slope.y, real(1.0)) * (real(1.0) / sqrt(real(1.0) + dot(slope, slope))));
-    candidate.usable = true; // on its edges too, where rounding decides
+    candidate.usable = true; // usable even on the edge of the part, where rounding decides
     return candidate;
 }
 
@@ -244,16 +245,16 @@ VKFV_FUNCTION Candidate draw_on_ring(BackwardOptics backward, real plane, real3 
     return on_ring(backward, direction, meeting);
 }
 
-// A direction towards the source, chosen in proportion to the light it would scatter towards the detector, and the
-// estimate of all of that light, per radiance of the source.
+// A direction towards the source, chosen in proportion to the light that it would scatter towards the detector, and the
+// estimate of all of that light per radiance of the source.
 struct Connection {
     real weight;
     real3 direction;
 };
 
-// Resampled importance sampling (J. Talbot, D. Cline, P. Egbert, EGSR 2005) from stratified candidates: uniform over
-// the source's disc or ring, and of the lobe seen backward. Each weighs f / (sum of all candidates' densities): the
-// balance heuristic.
+// Resampled importance sampling (J. Talbot, D. Cline, P. Egbert, EGSR 2005) from stratified candidates: some uniform
+// over the source's disc or ring, one drawn from the lobe seen backward. Each has the weight f / (sum of all
+// candidates' densities), by the balance heuristic.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Connection connect(VKFV_SCENE_PARAMETER Material material, BackwardOptics backward,
                                                      real plane, SeenPart part, uint cone_candidates, Hit hit,
                                                      real3 outgoing, real u0, real u1, real choice, Scattered of_lobe) {
@@ -265,7 +266,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Connection connect(VKFV_SCENE_PARAMETER Materi
     for (uint k = 0u; k < cone_candidates + backward.lobe_candidates; ++k) {
         Candidate candidate;
         if (k < cone_candidates) {
-            // Parts of equal area, each turned by the golden angle against the one before.
+            // The candidates divide the part into equal areas, each turned by the golden angle against the one before.
             real first = (real(k) + u0) / real(cone_candidates);
             real second = fract(u1 + real(k) * real(0.61803398874989485));
             if (is_ring) {
@@ -294,7 +295,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Connection connect(VKFV_SCENE_PARAMETER Materi
             real weight = flux / density;
             connection.weight = connection.weight + weight;
             if (weight > real(0.0)) {
-                // What the choice leaves of its number is as good as a new one.
+                // The rest of the number that chose is uniform again, so it serves as a new one.
                 real share = weight / connection.weight;
                 bool chosen = u < share;
                 u = chosen ? u / share : (u - share) / (real(1.0) - share);
@@ -305,7 +306,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Connection connect(VKFV_SCENE_PARAMETER Materi
     return connection;
 }
 
-// One lobe of a material, alone and white.
+// A material of one lobe of weight 1 in all wavelengths.
 VKFV_FUNCTION Material material_of_lobe(Lobe lobe) {
     Material material;
     material.lobe_0 = lobe;
@@ -317,8 +318,8 @@ VKFV_FUNCTION Material material_of_lobe(Lobe lobe) {
     return material;
 }
 
-// Whether a lobe is a delta: what has a density of its own has one in the mirror direction too. What is read from a
-// file is none.
+// True if a lobe is a delta. A lobe that has a density has one in the mirror direction too. A lobe with numbers from a
+// file is never a delta.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION bool lobe_is_delta(VKFV_SCENE_PARAMETER Lobe lobe) {
     bool delta = false;
     if ((scatter_models & SCATTER_DELTA) != 0u) {
@@ -332,9 +333,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION bool lobe_is_delta(VKFV_SCENE_PARAMETER Lobe l
 inline bool lobe_is_delta(Lobe lobe) { return lobe_is_delta(NoNumbers{}, lobe); }
 #endif
 
-// Where on a pixel and in the pupil a path starts.
+// The point on a pixel and in the pupil from which a path starts.
 struct BackwardStart {
-    real column; // of the pixel, in [0, 1)
+    real column; // column within the pixel, in [0, 1)
     real row;
     real2 pupil; // a point of the unit disc, as for look_from_detector()
 };
@@ -349,7 +350,7 @@ VKFV_FUNCTION BackwardStart backward_start(Lattice lattice, LatticeShift shift, 
     return start;
 }
 
-// The same where not all of a pixel is sensitive.
+// The start moved onto the sensitive part of a pixel, which is a square about its middle.
 VKFV_FUNCTION BackwardStart on_sensitive(Instrument instrument, BackwardStart start) {
     real side = min(real(2.0) * instrument.pixel_reach, real(1.0));
     start.column = real(0.5) + (start.column - real(0.5)) * side;
@@ -357,9 +358,9 @@ VKFV_FUNCTION BackwardStart on_sensitive(Instrument instrument, BackwardStart st
     return start;
 }
 
-// Where the light of a path is sorted to. In the detector's frame light arrives with the slope
-// (-pupil_radius pupil.x, pupil_radius pupil.y) over pupil_position times its place; a tilted detector's chief ray has
-// one of its own besides.
+// The pupil cell and pixel part that the light of a path is sorted to. In the detector's frame light arrives with the
+// slope (-pupil_radius pupil.x, pupil_radius pupil.y) plus a slope of pupil_position times its place; a tilted
+// detector's chief ray has an own slope besides.
 VKFV_FUNCTION CellPlace backward_place(BackwardOptics backward, PupilCells cells, int column, int row,
                                        BackwardStart start) {
     CellPlace place;
@@ -370,8 +371,8 @@ VKFV_FUNCTION CellPlace backward_place(BackwardOptics backward, PupilCells cells
     return place;
 }
 
-// The value of one path (see above): of one point of a pixel's lattice, whose number keys further draws. Asks for
-// the source once at each bounce at most, and once at its end.
+// The value of one path (see above), for one point of a pixel's lattice; the point's number keys further draws. It
+// queries the source at most once at each bounce and once at its end.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instrument instrument,
                                                       BackwardOptics backward, SpecimenRecord specimen,
                                                       Exposure exposure, int column, int row, uint randomisation,
@@ -391,14 +392,14 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
     real value = real(0.0);
     real throughput = arrival.weight;
     if ((features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u) {
-        // The ring stands in the specimen's medium, where radiance is the index' square times that in air.
+        // The ring stands in the specimen's medium, where radiance is the squared index times that in air.
         real index = specimen_medium_index(instrument, light);
         throughput = throughput / (index * index);
     }
     Material material = material_of_light(VKFV_SCENE instrument, specimen, specimen.material, light);
     real3 direction = arrival.direction;
     real plane = object_plane(backward, specimen, exposure);
-    // Counters that no forward path has; a lattice has fewer than 2^15 points.
+    // No forward path has these counters; a lattice has fewer than 2^15 points.
     uvec2 path = uvec2(uint(row * instrument.detector_columns + column), 0x80000000u + (randomisation << 15) + point);
     SourceQuery query;
     query.light = light;
@@ -431,7 +432,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         Lobe lobe = choose_lobe(material, draws.u3);
         bool delta = lobe_is_delta(VKFV_SCENE lobe);
         Material alone = material_of_lobe(lobe);
-        // One draw of the lobe, as if the light came from the detector: a candidate for the connection, and the way on.
+        // One direction is drawn from the lobe, as if the light came from the detector: it is a candidate for the
+        // connection, and the path goes on by it.
         bool absorbed = lobe.model == SCATTER_NONE;
         under_way = !absorbed && (delta || !last);
         Scattered scattered;
@@ -443,8 +445,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         }
         under_way = under_way && scattered.accepted;
         scattered.accepted = scattered.accepted && !delta;
-        // What the source shows for sure makes a smooth number of what the directions bring; its rim a rough one, which
-        // weighs less and is asked for less often. Elsewhere all of the source is looked at as one.
+        // Directions in which the source is seen for sure give an estimate of low variance; its rim gives one of high
+        // variance, but has less weight and is sampled less often. Elsewhere all of the source is sampled as one.
         SeenPart whole = seen_whole(backward, plane, hit.position);
         real sure = backward.rim_period != 0u ? sure_radius(backward, plane, hit.position, whole) : real(0.0);
         bool parted = sure > real(0.0);
@@ -471,7 +473,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
                     query.position = origin;
                     query.direction = connection.direction;
                     query.weight = throughput * connection.weight * (rim ? real(rim_period) : real(1.0));
-                    real seen_light = query.weight; // of what is seen for sure
+                    real seen_light = query.weight; // light of the part that is seen for sure
                     if (rim || !parted) {
                         seen_light = collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
                     }
@@ -501,6 +503,6 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
     return value;
 }
 
-// Sums of values are counted in 2^-36: a path's share of rounding is below 2^-37, and 2^24 paths of value 8 fit into 64
-// bits with a bit to spare.
+// Sums of values are counted in units of 2^-36: a path's rounding error is below 2^-37, and 2^24 paths of value 8 fit
+// into 64 bits with a bit to spare.
 const real BACKWARD_UNIT = real(68719476736.0);

@@ -1,15 +1,15 @@
 // Intersection with a conic of revolution in its vertex frame, in the curvature form that stays regular for a plane
 // (curvature 0): W. T. Welford, "Aberrations of Optical Systems" (1986), section 4.3, extended by the conic constant.
 
-// Constants of a kernel fold (device/prescription.glsl); of surfaces from a buffer the general form is as fast as a
-// question.
+// True in kernels that know their surfaces as constants, where a test of a surface's form folds away
+// (device/prescription.glsl). For surfaces from a buffer the general form is as fast as a test.
 #ifdef VKFV_SPECIALISED
 const bool SURFACE_IS_KNOWN = true;
 #else
 const bool SURFACE_IS_KNOWN = false;
 #endif
 
-// Where a ray meets a surface of revolution, in its vertex frame.
+// The meeting of a ray with a surface of revolution, in the surface's vertex frame.
 struct SurfacePoint {
     bool found;     // the ray meets the surface near its vertex
     real parameter; // position + parameter * direction is the point
@@ -20,12 +20,12 @@ struct SurfacePoint {
     real sine_squared; // |direction x normal|^2: (n sin I)^2
 };
 
-// position and direction in the vertex frame, direction of the given length with direction.z > 0.
-// From the point on the plane z = 0, with d the direction and F = c r^2, G = d_z - c (x d_x + y d_y):
-// further = F / (G + sqrt(G^2 - c (|d|^2 + k d_z^2) F)), the root nearest the vertex, without cancellation. Float keeps
-// the point's height by the way from that plane, its x and y by the way from the start: one rounding each. The normal,
-// cosine and sine are those of a sphere (k = 0): its root is d . N, and |d x N| is the same for all points of the ray's
-// line.
+// The meeting of a ray with a conic; position and direction in its vertex frame, direction of the given length with
+// direction.z > 0. From the point on the plane z = 0, with d the direction and F = c r^2, G = d_z - c (x d_x + y d_y):
+// further = F / (G + sqrt(G^2 - c (|d|^2 + k d_z^2) F)), the root nearest the vertex, without cancellation. In float
+// the point's height is computed by the way from that plane, its x and y by the way from the start: one rounding each.
+// The normal, cosine and sine are those of a sphere (k = 0): its root is d . N, and |d x N| is the same for all points
+// of the ray's line.
 VKFV_FUNCTION SurfacePoint meet_conic(real3 position, real3 direction, real length_squared, real curvature,
                                       real conic) {
     real to_plane = -position.z / direction.z;
@@ -67,7 +67,7 @@ VKFV_FUNCTION real3 conic_normal(real3 point, real curvature, real conic) {
     return real3(-curvature * point.x, -curvature * point.y, real(1.0) - curvature * (real(1.0) + conic) * point.z);
 }
 
-// The same meeting with the surface's normal along (-slope_over_r x, -slope_over_r y, normal_z).
+// The meeting with its normal replaced by one along (-slope_over_r x, -slope_over_r y, normal_z).
 VKFV_FUNCTION SurfacePoint with_normal(SurfacePoint meeting, real3 direction, real slope_over_r, real normal_z) {
     real3 d = direction;
     real nx = -slope_over_r * meeting.point.x;

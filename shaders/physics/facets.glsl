@@ -19,8 +19,8 @@ VKFV_FUNCTION FacetMeeting meet_facet(RayFrame frame, Facet facet) {
     real total = u + v + w;
     FacetMeeting meeting;
     meeting.found =
-        (min(u, min(v, w)) >= real(0.0) || max(u, max(v, w)) <= real(0.0)) && total != real(0.0); // else edge-on
-    meeting.leaving = total < real(0.0); // which goes by the corners: a normal may round to the other side
+        (min(u, min(v, w)) >= real(0.0) || max(u, max(v, w)) <= real(0.0)) && total != real(0.0); // false: edge-on
+    meeting.leaving = total < real(0.0); // decided by the corners, as a normal may round to the other side
     real inverse = meeting.found ? real(1.0) / total : real(0.0);
     meeting.distance = (u * a.z + v * b.z + w * c.z) * inverse;
     meeting.v = v * inverse;
@@ -28,16 +28,16 @@ VKFV_FUNCTION FacetMeeting meet_facet(RayFrame frame, Facet facet) {
     return meeting;
 }
 
-// ElementHit::index of light that is where it cannot be: rounding has put its start beside an edge, or bodies overlap.
+// ElementHit::index for light that is where it cannot be: rounding has put its start beside an edge, or bodies overlap.
 const int ASTRAY = -2;
 
-// What a walk over the elements has found so far.
+// The nearest meeting that a traversal of the elements has found so far.
 struct NearestElement {
     ElementHit hit;
-    real wrong_side; // mm, to the nearest facet ahead that shows the side on which the light is not
+    real wrong_side; // mm, distance to the nearest facet ahead that shows the side on which the light is not
 };
 
-// farthest: mm; nothing beyond is met.
+// The start of a traversal. farthest: mm; nothing beyond is met.
 VKFV_FUNCTION NearestElement no_element(real farthest) {
     NearestElement nearest;
     nearest.hit.index = -1;
@@ -47,13 +47,13 @@ VKFV_FUNCTION NearestElement no_element(real farthest) {
     return nearest;
 }
 
-// rounding: mm, of the ray's start.
+// Keeps a facet if it is the nearest so far. rounding: mm, of the ray's start.
 VKFV_FUNCTION NearestElement consider_facet(NearestElement nearest, RayFrame frame, Facet facet, int index,
                                             PathPlace from, real rounding) {
     FacetMeeting meeting = meet_facet(frame, facet);
     bool met = meeting.found && index != from.facet && meeting.distance > real(0.0);
     bool proper = facet.closed == 0u || meeting.leaving == (from.inside == facet.element);
-    // On a common edge the first one, in whatever order the walk hands them out.
+    // On a common edge the lower index wins, so that the result does not depend on the order of traversal.
     bool nearer = meeting.distance < nearest.hit.distance ||
                   (meeting.distance == nearest.hit.distance && index < nearest.hit.facet);
     if (met && proper && nearer) {
@@ -68,7 +68,7 @@ VKFV_FUNCTION NearestElement consider_facet(NearestElement nearest, RayFrame fra
 
 VKFV_FUNCTION ElementHit nearest_hit(NearestElement nearest, PathPlace from) {
     ElementHit hit = nearest.hit;
-    // A mesh is left through its facets alone.
+    // A mesh can be left only through its facets.
     bool astray = nearest.wrong_side < hit.distance || (from.inside >= 0 && hit.facet < 0);
     hit.index = astray ? ASTRAY : hit.index;
     return hit;

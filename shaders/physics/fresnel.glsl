@@ -1,5 +1,5 @@
-// How much an interface reflects: Born and Wolf, "Principles of Optics" (7th edition), sections 1.5.2 and 1.6.4.
-// Unpolarised light: the mean of both polarisations at each interface. Cosines are of the angles to the normal, > 0.
+// Reflectance of an interface: Born and Wolf, "Principles of Optics" (7th edition), sections 1.5.2 and 1.6.4. Light is
+// unpolarised: the mean of both polarisations at each interface. Cosines are of the angles to the normal, > 0.
 
 VKFV_FUNCTION real fresnel_reflectance(real index_before, real index_after, real cosine) {
     real cosine_after_squared = real(1.0) - refracted_sine_squared(index_before, index_after, cosine);
@@ -11,7 +11,7 @@ VKFV_FUNCTION real fresnel_reflectance(real index_before, real index_after, real
     return cosine_after_squared > real(0.0) ? real(0.5) * (s * s + p * p) : real(1.0);
 }
 
-// The reflectance of an absorbing medium whose index, over that of the medium before, is n + i k: Fresnel's equations
+// The reflectance of an absorbing medium, for n + i k, its index over that of the medium before: Fresnel's equations
 // with a complex index (section 14.2), a + i b being the square root of (n + i k)^2 - sin^2.
 VKFV_FUNCTION real absorbing_reflectance(real n, real k, real cosine) {
     real cosine_squared = cosine * cosine;
@@ -20,7 +20,7 @@ VKFV_FUNCTION real absorbing_reflectance(real n, real k, real cosine) {
     real imaginary_part = real(2.0) * n * k;
     real magnitude = sqrt(real_part * real_part + imaginary_part * imaginary_part); // a^2 + b^2
     real a_squared = real(0.5) * (magnitude + real_part);
-    if (real_part < real(0.0)) { // without its cancellation
+    if (real_part < real(0.0)) { // this form avoids cancellation
         a_squared = real(0.5) * imaginary_part * imaginary_part / (magnitude - real_part);
     }
     real cross_term = real(2.0) * sqrt(a_squared) * cosine;
@@ -30,14 +30,15 @@ VKFV_FUNCTION real absorbing_reflectance(real n, real k, real cosine) {
     return real(0.5) * (s + p);
 }
 
-// One polarisation through one layer: amplitudes of its two interfaces, and the cosine of the phase between them.
+// The reflectance of one layer for one polarisation, by the amplitudes of its two interfaces and the cosine of the
+// phase between them.
 VKFV_FUNCTION real two_interface_reflectance(real first, real second, real cosine_phase) {
     real cross_term = real(2.0) * first * second * cosine_phase;
     return (first * first + second * second + cross_term) / (real(1.0) + first * first * second * second + cross_term);
 }
 
-// layer_thickness and 1 / wave_number in the same unit. Where the light is totally reflected, it is at the layer's far
-// side or before: the medium beyond is the thinner of the two.
+// The reflectance of a thin layer. layer_thickness and 1 / wave_number have the same unit. Total reflection is at the
+// layer's far side or before it: the medium beyond has the lower index of the two.
 VKFV_FUNCTION real layer_reflectance(real index_before, real layer_index, real index_after, real cosine,
                                      real layer_thickness, real wave_number) {
     real axial_before = index_before * cosine; // n cos(theta), in each medium
@@ -55,7 +56,7 @@ VKFV_FUNCTION real layer_reflectance(real index_before, real layer_index, real i
     real p_after = axial_after / (index_after * index_after);
     real p_first = (p_layer - p_before) / (p_layer + p_before);
     real p_second = (p_after - p_layer) / (p_after + p_layer);
-    // Twice the phase across the layer.
+    // The phase is that of two passages across the layer.
     real cosine_phase = turn_of(real(2.0) * layer_thickness * axial_layer * wave_number).cosine;
     bool total = layer_squared <= real(0.0) || after_squared <= real(0.0);
     return total ? real(1.0)
@@ -63,7 +64,7 @@ VKFV_FUNCTION real layer_reflectance(real index_before, real layer_index, real i
                                 two_interface_reflectance(p_first, p_second, cosine_phase));
 }
 
-// Of a surface's interface, from either side.
+// The reflectance of a surface's interface, from either side. wave_number: 1/um.
 VKFV_FUNCTION real interface_reflectance(Surface surface, real index_before, real index_after, real cosine,
                                          real wave_number) {
     real reflectance = real(0.0);

@@ -3,13 +3,14 @@
 // power, p' = -power x: linear and canonical, so it keeps etendue at any angle (as a thin lens of tangents does not).
 
 struct IdealLens {
-    bool passes;      // else no direction has these cosines
+    bool passes;      // false: no direction has these cosines
     real3 position;   // on the back focal plane, in the frame of the lens (principal planes at z = 0)
-    real3 direction;  // of length index
-    real path_length; // mm: what the way from the given point to the back focal plane adds
+    real3 direction;  // as long as the index
+    real path_length; // mm, optical path from the given point to the back focal plane
 };
 
-// position and direction (of length index_before) anywhere in front of the lens, in its frame.
+// Light through the lens; position and direction (of length index_before) in the frame of the lens, anywhere in front
+// of it.
 VKFV_FUNCTION IdealLens pass_ideal_lens(real3 position, real3 direction, real power, real index_before,
                                         real index_after) {
     real focal_length = real(1.0) / power;

@@ -17,13 +17,13 @@ struct Lattice {
 };
 // clang-format on
 
-// In units of 2^-32.
+// The lattice's shifts in its eight dimensions, in units of 2^-32.
 struct LatticeShift {
     uvec4 first;
     uvec4 second;
 };
 
-// Of `randomisation`, for one pixel of one image. The 2 keeps its counters apart from those of paths.
+// The shift of one randomisation for one pixel of one image. The 2 keeps its counters apart from those of paths.
 VKFV_FUNCTION LatticeShift lattice_shift(uint seed, uint image, uint pixel, uint randomisation) {
     LatticeShift shift;
     shift.first = philox_4x32(uvec4(pixel, randomisation, 0u, 2u), seed, image, PHILOX_ROUNDS);
@@ -31,18 +31,18 @@ VKFV_FUNCTION LatticeShift lattice_shift(uint seed, uint image, uint pixel, uint
     return shift;
 }
 
-// In (0, 1), of a number and its shift in units of 2^-32.
+// A coordinate in (0, 1) from a point's fraction and its shift, both in units of 2^-32.
 VKFV_FUNCTION real shifted_coordinate(uint fraction, uint shift) {
     return (real((fraction + shift) >> 9) + real(0.5)) * real(1.1920928955078125e-7);
 }
 
-// Of the point and one dimension's z and shift. n = 1 has no fraction.
+// One coordinate of a point, by that dimension's z and shift. n = 1 has no fraction.
 VKFV_FUNCTION real lattice_coordinate(Lattice lattice, uint point, uint z, uint shift) {
     return shifted_coordinate(lattice.size_bits == 0u ? 0u : (point * z) << (32u - lattice.size_bits), shift);
 }
 
-// The same for two dimensions of every period-th point alone, which may make a poor lattice: k / n and k times the
-// golden ratio, of the k-th of n such points. Taken in another order, or as multiples of two irrational numbers, they
+// Two coordinates for a lattice of every period-th point alone, which might be a poor lattice: the k-th of n such
+// points has k / n and k times the golden ratio. In another order, or as multiples of two irrational numbers, they
 // leave more noise.
 VKFV_FUNCTION real2 sparse_coordinates(Lattice lattice, uint point, uint period, uint shift_0, uint shift_1) {
     return real2(lattice_coordinate(lattice, point, 1u, shift_0),

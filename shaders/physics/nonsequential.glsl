@@ -1,7 +1,7 @@
-// Light that finds its own way: at every turn the nearest of all elements and the specimen, and one of the two rays
-// that an interface makes of one, drawn with its share of the power (Russian roulette, so every ray keeps its power).
-// Frame: the elements', that is the specimen's with its origin in the plane of best focus; mm, directions are unit
-// vectors.
+// Non-sequential paths: at every interaction a ray meets the nearest of all elements and the specimen, and one of the
+// two rays that an interface makes of one is drawn with its share of the power (Russian roulette, so every ray keeps
+// its power). The frame is the elements', which is the specimen's with its origin in the plane of best focus; mm,
+// directions are unit vectors.
 
 #ifdef __cplusplus
 template <class Scene>
@@ -31,14 +31,14 @@ VKFV_FUNCTION real3 out_of_element(Element element, real3 v) {
     return element.axis_x * v.x + element.axis_y * v.y + element.axis_z * v.z;
 }
 
-// Where a ray meets one element, in the element's frame turned so that the ray travels towards +z.
+// The meeting of a ray with one element, in the element's frame turned so that the ray travels towards +z.
 struct ElementMeeting {
     bool found;
     bool clear;    // within the free aperture
     real distance; // mm
     real3 point;
-    real3 direction; // the ray's
-    real3 normal;    // not normalised, towards +z
+    real3 direction; // the ray's direction
+    real3 normal;    // normal, not of unit length, towards +z
     real side;       // 1: the ray travels along the element's own z, -1: against it
 };
 
@@ -55,7 +55,7 @@ VKFV_FUNCTION Surface seen_from(Surface surface, real side) {
     return seen;
 }
 
-// The wall of a tube about z from z = 0 to `length`, met from inside or outside.
+// The meeting with the wall of a tube about z from z = 0 to `length`, from inside or outside.
 VKFV_FUNCTION ElementMeeting meet_barrel(ElementMeeting meeting, Element element, real3 start, real least) {
     real3 d = meeting.direction;
     real a = d.x * d.x + d.y * d.y;
@@ -65,7 +65,7 @@ VKFV_FUNCTION ElementMeeting meet_barrel(ElementMeeting meeting, Element element
     real root = sqrt(max(discriminant, real(0.0)));
     real far = (root - b) / max(a, real(1e-20));
     real near = (-root - b) / max(a, real(1e-20));
-    // The wall lies between these heights of the turned frame.
+    // The wall lies between the heights low and high of the turned frame.
     real low = meeting.side > real(0.0) ? real(0.0) : -element.barrel_length;
     real high = low + element.barrel_length;
     real near_z = start.z + near * d.z;
@@ -78,8 +78,8 @@ VKFV_FUNCTION ElementMeeting meet_barrel(ElementMeeting meeting, Element element
     return meeting;
 }
 
-// least: mm; nearer meetings are the start itself. comes_from_it: the ray starts on this element, so that of a conic's
-// two meetings the start is one.
+// The meeting of a ray with one element. least: mm; nearer meetings are the start itself. comes_from_it: the ray starts
+// on this element, so that one of a conic's two meetings is the start.
 VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 direction, bool comes_from_it,
                                           real least) {
     real3 local = into_element(element, origin - element.origin);
@@ -101,7 +101,7 @@ VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 d
         meeting.normal = normal_at(on);
         meeting.found = on.found && on.parameter > least && !comes_from_it;
         if (comes_from_it && surface.curvature != real(0.0) && (surface.flags & SURFACE_ASPHERIC) == 0u) {
-            // On the conic the quadratic's constant term is zero: one root is the start, and this the other.
+            // On the conic the quadratic's constant term is zero: one root is the start, the other the meeting.
             real c = surface.curvature;
             real q = real(1.0) + surface.conic;
             real3 e = meeting.direction;
@@ -115,10 +115,10 @@ VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 d
         real3 point = start + meeting.distance * meeting.direction;
         real r_squared = point.x * point.x + point.y * point.y;
         meeting.clear = r_squared <= surface.semi_diameter_squared;
-        // Not on the conic's far half: rays across the axis meet that too.
+        // Meetings with the conic's far half do not count: rays across the axis would meet it too.
         bool near_half = (surface.flags & SURFACE_ASPHERIC) != 0u ||
                          surface.curvature * (real(1.0) + surface.conic) * point.z < real(1.0);
-        // The mount: the same surface beyond the free aperture, and where that ends, the plane of its rim.
+        // The mount is the same surface beyond the free aperture, and where that ends, the plane of its rim.
         bool on_surface = meeting.found && near_half && r_squared <= element.rim_radius * element.rim_radius;
         real to_rim = (meeting.side * element.rim_height - start.z) / max(meeting.direction.z, real(1e-20));
         real3 rim_point = start + to_rim * meeting.direction;
@@ -134,28 +134,28 @@ VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 d
     return meeting;
 }
 
-// The least distance at which a ray that starts at `origin` may meet something: a few roundings of where it starts.
+// The least distance at which a ray from `origin` may meet something: a few roundings of its coordinates.
 VKFV_FUNCTION real least_distance(real3 origin) {
     real largest = max(max(abs(origin.x), abs(origin.y)), abs(origin.z));
     return real(16.0) * SURFACE_EPSILON * max(largest, real(1.0));
 }
 
-// What becomes of a ray at an element that it has met.
+// The outcome of a ray's meeting with an element.
 struct Passage {
-    Fate fate; // PATH_ALIVE: it goes on
+    Fate fate; // PATH_ALIVE: the ray goes on
     real3 position;
     real3 direction; // unit
 };
 
-// The same in the frame that the meeting is given in, where the interface is between these indices and the normal has
-// length 1. clear: it is no mount that is met. u uniform in (0, 1): which of the possible rays.
+// The outcome in the frame of the meeting. before, after: indices of the media; normal: unit. clear: the ray is within
+// the free aperture, not on the mount. u: uniform in (0, 1), chooses among the possible rays.
 VKFV_FUNCTION Passage turn_at(Element element, int index, bool clear, real3 point, real3 direction, real3 normal,
                               real before, real after, Light light, real u) {
     Surface surface = element.surface;
     real cosine = min(dot(direction, normal), real(1.0));
     uint status = PATH_ALIVE;
     if (!clear || element.kind == ELEMENT_DETECTOR || element.kind == ELEMENT_ABSORBER) {
-        status = PATH_VIGNETTED; // by the mount, or the detector's back
+        status = PATH_VIGNETTED; // by the mount or the detector's back
     } else if (element.kind == ELEMENT_INTERFACE) {
         real reflectance = interface_reflectance(surface, before, after, cosine, light.wave_number);
         if (refracted_sine_squared(before, after, cosine) >= real(1.0) || u < reflectance) {
@@ -177,7 +177,7 @@ VKFV_FUNCTION Passage turn_at(Element element, int index, bool clear, real3 poin
         IdealLens lens = pass_ideal_lens(point, direction * before, surface.power, before, after);
         status = lens.passes ? PATH_ALIVE : PATH_TOTAL_REFLECTION;
         direction = lens.direction * (real(1.0) / after);
-        // On from the lens' own plane: something may stand between it and its focal plane.
+        // The ray starts in the lens' own plane, since something may stand between the lens and its focal plane.
         point = lens.position - lens.direction * (lens.position.z / lens.direction.z);
     }
     Passage passage;
@@ -209,17 +209,18 @@ VKFV_FUNCTION Passage pass_element(Element element, int index, ElementMeeting me
 
 struct FacetPassage {
     Passage passage;
-    int inside; // as PathPlace::inside
+    int inside; // element of the closed mesh that the light is in afterwards, as PathPlace::inside
 };
 
-// The surface's index_before is that of the medium outside of the mesh, index_after that inside.
+// The outcome of a ray's meeting with a facet. The surface's index_before is that of the medium outside the mesh,
+// index_after that inside.
 VKFV_FUNCTION FacetPassage pass_facet(Element element, Facet facet, real3 origin, real3 direction, int inside,
                                       Light light, real u) {
     FacetMeeting meeting = meet_facet(ray_frame(origin, direction), facet);
     Surface surface = element.surface;
     real outer = surface.index_before + disperse(surface.dispersion_before, light.spectral);
     real inner = surface.index_after + disperse(surface.dispersion_after, light.spectral);
-    // From the corner: on the facet, however far the ray came.
+    // The point is computed from the corners, so that it lies on the facet however far the ray came.
     real3 point =
         facet.corner_a + meeting.v * (facet.corner_b - facet.corner_a) + meeting.w * (facet.corner_c - facet.corner_a);
     real3 normal = facet.normal * (meeting.leaving ? real(1.0) : real(-1.0));
@@ -233,13 +234,13 @@ VKFV_FUNCTION FacetPassage pass_facet(Element element, Facet facet, real3 origin
     return result;
 }
 
-// Turns, at elements or the specimen, that a path may have: about twice those of the sequential model's longest. What
-// reaches the limit is counted in the ledger.
+// Most interactions, with elements or the specimen, that a path may have: about twice those of the sequential model's
+// longest. The ledger counts paths that reach the limit.
 const int MOST_INTERACTIONS = 128;
-// Blocks of random numbers: one an interaction from 1 on, and from here on those of the scatter events.
+// Blocks of random numbers: one an interaction from 1 on; those of the scatter events begin here.
 const uint SCATTER_FIRST_BLOCK = 256u;
 
-// One path from the source to its end.
+// Traces one non-sequential path from the source to its end.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAMETER Instrument instrument,
                                                                 SpecimenRecord specimen, Exposure exposure,
                                                                 SourceFrame frame, uvec2 path) {

@@ -1,4 +1,4 @@
-// Forward paths, in two halves: from the source to light that leaves the specimen, and from there to a pixel.
+// Forward paths in two halves: from the source to light that leaves the specimen, and from the specimen to a pixel.
 
 #ifdef __cplusplus
 template <class Scene>
@@ -14,7 +14,8 @@ Hit specimen_hit(real3 origin, real3 direction); // device/specimen_hit.glsl
 EmissionCell emission_cell(uvec2 path);          // device/emission_cell.glsl
 #endif
 
-// How far the stage holds the specimen beside its place. Rays keep to the specimen frame of a true stage.
+// Lateral displacement by which the stage holds the specimen beside its place, mm. Rays keep to the specimen frame of a
+// true stage.
 VKFV_FUNCTION real3 displacement(Exposure exposure) { return real3(exposure.beside_x, exposure.beside_y, real(0.0)); }
 
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit displaced_hit(VKFV_SCENE_PARAMETER Exposure exposure, real3 origin,
@@ -31,7 +32,7 @@ VKFV_FUNCTION Fate make_fate(uint status, int surface) {
     return fate;
 }
 
-// Where the ledger counts a fate: the plain statuses first, then those of each surface.
+// Index of the ledger's slot for a fate: the statuses without a surface first, then those of each surface.
 VKFV_FUNCTION int ledger_slot(Fate fate) {
     return fate.surface < 0
                ? int(fate.status)
@@ -46,7 +47,8 @@ VKFV_FUNCTION real3 scatter_origin(Hit hit) {
     return hit.position + hit.normal * (largest * real(9.5367431640625e-7));
 }
 
-// Could light that leaves the specimen still reach the detector? Conservative: see Instrument. direction: unit.
+// True if light that leaves the specimen could still reach the detector: the acceptance bound, a conservative test (see
+// Instrument). direction: unit.
 VKFV_FUNCTION bool passes_gate(Instrument instrument, real top, real3 position, real3 direction) {
     real rise = top - position.z;
     real x = instrument.gate_position * (position.x * direction.z + direction.x * rise) +
@@ -57,15 +59,15 @@ VKFV_FUNCTION bool passes_gate(Instrument instrument, real top, real3 position, 
     return direction.z > real(0.0) && x * x + y * y <= radius * radius;
 }
 
-// Light at the specimen's top plane (specimen frame), on its way down, or why it did not come so far.
+// Light at the specimen's top plane (specimen frame) on its way down, or the reason why it ended before.
 struct Arrival {
-    Fate fate;       // PATH_ALIVE: it arrived
+    Fate fate;       // PATH_ALIVE: the light arrived
     real3 position;  // on the plane z = top
     real3 direction; // unit
     Light light;
 };
 
-// From the illumination train's last vertex to the specimen's top plane, whose z becomes 0.
+// Flight from the illumination train's last vertex to the specimen's top plane, whose z becomes 0.
 VKFV_FUNCTION Ray fly_to_top(Ray ray, Exposure exposure, real index) {
     Ray top = fly_to_plane(ray, exposure.top_distance, index);
     real rest = exposure.top_distance_residual / top.direction.z;
@@ -73,7 +75,7 @@ VKFV_FUNCTION Ray fly_to_top(Ray ray, Exposure exposure, real index) {
     return top;
 }
 
-// From the height z in the specimen frame to the plane that stands at z = -top_distance in front of the imaging train.
+// Rise from the height z in the specimen frame to the plane at z = -top_distance in front of the imaging train, mm.
 VKFV_FUNCTION real rise_to_top(SpecimenRecord specimen, Exposure exposure, real z) {
     return specimen.top - z + exposure.top_distance_residual;
 }
@@ -115,7 +117,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Emission emit(VKFV_SCENE_PARAMETER Instrument 
     return emission;
 }
 
-// Through the illumination, to some plane behind it. ray: in the frame of its first vertex.
+// Passes light through the illumination to some plane behind it. ray: in the frame of its first vertex.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult pass_illumination(VKFV_SCENE_PARAMETER Instrument instrument, Ray ray,
                                                                 real index, Light light) {
     TrainResult train = enter_train(ray, index);
@@ -136,7 +138,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult pass_illumination(VKFV_SCENE_PARAM
     return train;
 }
 
-// As light of the path leaves the source.
+// The light with which a path leaves the source.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Emission emit_path(VKFV_SCENE_PARAMETER Instrument instrument, Exposure exposure,
                                                      uvec2 path) {
     return emit(VKFV_SCENE instrument,
@@ -150,40 +152,39 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instru
     Ray ray = emission.ray;
     bool is_ring = (features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u;
     ray.position.z = ray.position.z + (is_ring ? instrument.ring.aim_distance : -instrument.source_distance);
-    // The disc stands in air, the ring in the specimen's medium, which is on both sides of a cover glass.
+    // The disc stands in air; the ring stands in the specimen's medium, which is on both sides of a cover glass.
     real specimen_index = specimen_medium_index(instrument, arrival.light);
     real index = is_ring ? specimen_index : real(1.0);
     ray.direction = ray.direction * index;
     TrainResult train = pass_illumination(VKFV_SCENE instrument, ray, index, arrival.light);
     Ray down = fly_to_top(train.ray, exposure, specimen_index);
     arrival.fate = make_fate(train.status, train.surface);
-    // The specimen frame is the illumination's turned half a turn about x.
+    // The specimen frame is the illumination's turned by half a turn about x.
     real scale = real(1.0) / specimen_index;
     arrival.position = real3(down.position.x, -down.position.y, specimen.top);
     arrival.direction = real3(down.direction.x * scale, -down.direction.y * scale, -down.direction.z * scale);
     return arrival;
 }
 
-// The first half of a path.
+// The result of the first half of a path.
 struct Departure {
-    Fate fate; // of its own light; PATH_ALIVE: the survivor stands for it
+    Fate fate; // fate of its own light; PATH_ALIVE: the survivor stands for it
     bool survives;
     Survivor survivor;
 };
 
-// Directed scatter. Of what a bounce scatters into the pupil's gate there are two samples: the path's own direction, of
-// density p (the chosen lobe's), and one aimed at the gate, uniform in its slopes, of density q. Each weighs p / (p +
-// q), the balance heuristic of E. Veach and L. J. Guibas, SIGGRAPH 95, 419, and since
+// Directed scatter: light that a bounce scatters into the pupil's gate has two samples. One is the path's own
+// direction, of density p (the chosen lobe's); the other is aimed at the gate, uniform in its slopes, of density q.
+// Each has the weight p / (p + q), the balance heuristic of E. Veach and L. J. Guibas, SIGGRAPH 95, 419. Since
 //   E[sum] = integral over the gate of p p / (p + q) + q p / (p + q) = integral over the gate of p,
-// the expectation is the analog one for whatever is seen through the gate. The own direction decides how the path goes
-// on: if it leaves outside the gate, or meets the specimen again before the last bounce, its light is counted, or
-// scattered on, whole as in the analog form. So an aimed sample that turns out to meet the specimen again counts
-// nowhere, but for the last bounce, whose light is nobody's further. A delta has no density: it is never aimed at, and
-// its own light weighs 1.
-// Of all samples of a path one survives, with a chance proportional to its weight and the sum of all weights as its
-// own, at most max_bounces + 1: the expectation stays.
+// the expected light through the gate is that of analog scatter. The path goes on by its own direction: if it leaves
+// outside the gate, or meets the specimen again before the last bounce, its light is counted, or scattered on, in full
+// as in the analog form. So an aimed sample that turns out to meet the specimen again counts nowhere, except after the
+// last bounce, whose light no other sample carries. A delta has no density: it is never aimed at, and its own light has
+// the weight 1. Of all samples of a path one survives, with a probability proportional to its weight, and its weight
+// becomes the sum of all weights, at most max_bounces + 1: the expectation stays the same.
 struct GateDisc {
-    real2 centre; // of the slopes x/z and y/z that pass the gate
+    real2 centre; // slopes x/z and y/z in the middle of those that pass the gate
     real radius;
 };
 
@@ -211,7 +212,7 @@ VKFV_FUNCTION bool within_disc(GateDisc disc, real3 direction) {
     return direction.z > real(0.0) && x * x + y * y <= radius * radius;
 }
 
-// p / q of a direction within the gate; d(omega) = z^3 d(slopes). 0 for a delta.
+// The ratio p / q for a direction within the gate; d(omega) = z^3 d(slopes). 0 for a delta.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real density_ratio(VKFV_SCENE_PARAMETER Lobe lobe, Incidence incidence, GateDisc disc,
                                                      real3 direction) {
     real density = lobe_bsdf(VKFV_SCENE lobe, incidence, direction) * max(dot(direction, incidence.normal), real(0.0));
@@ -219,21 +220,21 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real density_ratio(VKFV_SCENE_PARAMETER Lobe l
            (direction.z * direction.z * direction.z);
 }
 
-// The last scatter of a path, of whose light only what passes the gate is seen: instead of a direction drawn from the
-// lobe by rejection, one uniform in the slopes of the gate's disc, of density q, kept with the chance p / q. Where that
-// is nowhere above 1 it is exact: the light passes with the chance of the integral of p over the gate, and those
-// directions that do have the density p. All other light has escaped; mostly that is known from a bound of p alone.
-// Where the bound exceeds 1, near the middle of a sharp lobe, the direction is one of the lobe's own within the least
-// cone about the mirror direction that holds the gate, and p / q is asked of that.
+// The last scatter of a path, of which only light that passes the gate is seen. Instead of a direction drawn from the
+// lobe by rejection, one is drawn uniform in the slopes of the gate's disc, of density q, and accepted with probability
+// p / q. This is exact where p / q is nowhere above 1: the light passes with the probability that is the integral of p
+// over the gate, and passing directions have the density p. All other light has escaped; mostly that is known from a
+// bound of p alone. Where the bound exceeds 1, near the middle of a sharp lobe, the direction is drawn from the lobe
+// within the least cone about the mirror direction that holds the gate, with the p / q of that draw.
 struct GatedScatter {
-    bool applies; // else both bounds exceed 1, or the model knows none
+    bool applies; // false: both bounds exceed 1, or the model has none
     bool passes;
     real3 direction;
 };
 
 VKFV_SCENE_FUNCTION VKFV_FUNCTION GatedScatter scatter_into_gate(VKFV_SCENE_PARAMETER Lobe lobe, Incidence incidence,
                                                                  GateDisc disc, real u0, real u1, real u2) {
-    // Unit directions are no further apart than their slopes.
+    // Unit directions are no further apart than their slopes, so distances of slopes are scaled to bounds of these.
     real scale = inversesqrt(real(1.0) + disc.centre.x * disc.centre.x + disc.centre.y * disc.centre.y);
     real3 off = real3(disc.centre.x * scale, disc.centre.y * scale, scale) - incidence.mirror;
     real to_centre = sqrt(dot(off, off));
@@ -269,7 +270,7 @@ inline GatedScatter scatter_into_gate(Lobe lobe, Incidence incidence, GateDisc d
 #endif
 
 struct Selection {
-    real weight; // of all samples so far
+    real weight; // sum of the weights of all samples so far
     Survivor survivor;
 };
 
@@ -290,7 +291,7 @@ VKFV_FUNCTION uint weight_beside(Survivor survivor) {
     return (survivor.mark & SURVIVOR_BESIDE) != 0u ? WEIGHT_ONE : 0u;
 }
 
-// Of what a path adds to the ledger in all, in units of 2^-18: below 2^31, as no weight exceeds 66.
+// The square of a path's total weight in the ledger, in units of 2^-18: below 2^31, as no weight exceeds 66.
 VKFV_FUNCTION uint weight_square(uint weight) {
     return (multiply_high(weight, weight) << 6) | ((weight * weight) >> 26);
 }
@@ -337,7 +338,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
                  : gated.applies      ? PATH_ESCAPED
                  : scattered.absorbed ? PATH_ABSORBED
                                       : PATH_NUMERICAL;
-        // What a lossy lobe absorbs is of its own direction alone.
+        // Light that a lossy lobe absorbs is of its own direction alone.
         bool lobe_lost = scattered.absorbed && scattered.lobe.model != SCATTER_NONE;
         if (directed && (under_way || lobe_lost)) {
             Draws draws = draw(exposure.seed, exposure.image, path, first_block + SCATTER_BLOCKS - 1u);
@@ -396,7 +397,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAME
                                         arrival.direction, arrival.light);
         departure.survivor.spectral = arrival.light.spectral;
         if ((features(VKFV_SCENE_ALONE) & FEATURE_LOSSES) != 0u) {
-            // The block after those of the last scatter event.
+            // The draw is from the block after those of the last scatter event.
             Draws draws = draw(exposure.seed, exposure.image, path, 1u + uint(specimen.max_bounces) * SCATTER_BLOCKS);
             departure.survivor.survival = draws.u0;
         }
@@ -404,14 +405,14 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAME
     return departure;
 }
 
-// The second half: where on the detector.
+// The result of the second half of a path: its place on the detector.
 struct Detection {
     Fate fate; // PATH_DETECTED comes with a pixel; PATH_ALIVE: a twin, not to be counted
     int column;
     int row;
-    real x; // detector's plane, axes parallel to the specimen's, inversion not removed, mm
+    real x; // mm, on the detector's plane, axes parallel to the specimen's, inversion not removed
     real y;
-    real2 slope; // dx/dz and dy/dz there
+    real2 slope; // slopes dx/dz and dy/dz at this place
 };
 
 VKFV_FUNCTION real3 survivor_direction(Survivor survivor) {
@@ -419,7 +420,7 @@ VKFV_FUNCTION real3 survivor_direction(Survivor survivor) {
     return real3(survivor.direction_x, survivor.direction_y, sqrt(max(axial, real(0.0))));
 }
 
-// Whether the light meets the specimen again: the test that the first half left.
+// True if the light meets the specimen again: the test that the first half left out.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION bool survivor_occluded(VKFV_SCENE_PARAMETER Exposure exposure, Survivor survivor) {
     bool occluded = false;
     if ((survivor.mark & SURVIVOR_TO_TEST) != 0u) {
@@ -429,11 +430,12 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION bool survivor_occluded(VKFV_SCENE_PARAMETER Ex
     return occluded;
 }
 
-// A landing on the detector's plane, mm, axes parallel to the specimen's, inversion not removed.
+// The pixel on which light lands. x, y: mm, on the detector's plane, axes parallel to the specimen's, inversion not
+// removed.
 VKFV_FUNCTION Detection detect(Instrument instrument, real x, real y) {
     real half_width = instrument.detector_half_width;
     real half_height = instrument.detector_half_height;
-    // Removing the inversion: a negative magnification turns the image half a turn.
+    // The inversion is removed: a negative magnification turns the image by half a turn.
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
     real scale = real(instrument.detector_columns) / (real(2.0) * half_width);
     bool on_detector = abs(x) < half_width && abs(y) < half_height;
@@ -446,7 +448,7 @@ VKFV_FUNCTION Detection detect(Instrument instrument, real x, real y) {
     real row = (turn * y + half_height) * scale;
     detection.column = on_detector ? clamp(int(floor(column)), 0, instrument.detector_columns - 1) : 0;
     detection.row = on_detector ? clamp(int(floor(row)), 0, instrument.detector_rows - 1) : 0;
-    // Between what is sensitive of the pixels: beside the detector too.
+    // Light between the sensitive parts of the pixels is off the detector too.
     on_detector = on_detector && abs(column - real(detection.column) - real(0.5)) <= instrument.pixel_reach &&
                   abs(row - real(detection.row) - real(0.5)) <= instrument.pixel_reach;
     detection.fate = make_fate(!finite ? PATH_NUMERICAL : on_detector ? PATH_DETECTED : PATH_OFF_DETECTOR, -1);
@@ -458,7 +460,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
                                                            Survivor survivor) {
     real3 direction = survivor_direction(survivor);
     bool occluded = survivor_occluded(VKFV_SCENE exposure, survivor);
-    // Re-based: on the top plane, whose distance to the front vertex is known in double.
+    // The ray starts on the top plane, whose distance to the front vertex is known in double.
     real rise = rise_to_top(specimen, exposure, survivor.position.z) / direction.z;
     Ray ray;
     ray.position = real3(survivor.position.x + rise * direction.x, survivor.position.y + rise * direction.y,
@@ -480,7 +482,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
     return detection;
 }
 
-// Where light that was detected is sorted to.
+// The pupil cell and pixel part that detected light is sorted to.
 VKFV_FUNCTION CellPlace detection_place(Instrument instrument, PupilCells cells, Detection detection) {
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
     real scale = real(instrument.detector_columns) / (real(2.0) * instrument.detector_half_width);

@@ -1,5 +1,5 @@
-// A factor in [0, 1] over x and y of a plane. The pattern has a frame of its own, of which centre and axis are its
-// origin and the direction of its x. Its value, 0 to 1, stands between the factors `lowest` and `highest`:
+// Patterns: a factor in [0, 1] over x and y of a plane. A pattern has its own frame: `centre` is its origin, `axis` the
+// direction of its x. Its value, 0 to 1, is scaled to the range between the factors `lowest` and `highest`:
 //   PATTERN_GRATING       (1 + cos(2 pi u)) / 2, u in periods along the pattern's x: brightest at the origin
 //   PATTERN_CHECKERBOARD  1 on squares that touch the origin in the first and third quadrant, and so on
 //   PATTERN_STAR          (1 + cos(cycles phi)) / 2, phi the azimuth about the origin from the pattern's x
@@ -33,7 +33,7 @@ VKFV_FUNCTION real cosine_of_multiple(real2 unit, int n) {
     return power.x;
 }
 
-// The point that a whole number counts along a row of points which goes on mirrored: ... 1 0 | 0 1 ... n-1 | n-1 ...
+// The point for a whole number along a row of points that goes on mirrored: ... 1 0 | 0 1 ... n-1 | n-1 ...
 VKFV_FUNCTION int mirrored_point(real number, int points) {
     real twice = real(2 * points);
     int place = clamp(int(number - twice * floor(number / twice)), 0, 2 * points - 1);
@@ -57,11 +57,11 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real grid_value(VKFV_SCENE_PARAMETER Pattern p
     return mix(below, above, row - first_row);
 }
 
-// x, y: mm, in the frame of the plane.
+// The factor of a pattern. x, y: mm, in the frame of the plane.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real pattern_factor(VKFV_SCENE_PARAMETER Pattern pattern, real x, real y) {
     real from_x = x - pattern.centre_x;
     real from_y = y - pattern.centre_y;
-    // In periods, squares or points; mm for a star.
+    // The coordinates u and v are in periods, squares or points; mm for a star.
     real u = (pattern.axis_x * from_x + pattern.axis_y * from_y) * pattern.per_mm;
     real v = (pattern.axis_x * from_y - pattern.axis_y * from_x) * pattern.per_mm;
     real value = real(0.0);

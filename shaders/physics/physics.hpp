@@ -1,7 +1,7 @@
 // The C++ side of the common language (see lang.glsl): everything in this folder as vkfv::physics::f64 (double,
 // the reference) and vkfv::physics::f32 (float, the device's arithmetic on the host).
 //
-// A scene, handed to the functions that take one, has:
+// A scene, handed to the functions that take one, has these members:
 //   Surface surface_at(int index) const;
 //   EmissionCell emission_cell(uvec2 path) const;      only for forward paths
 //   uint features() const;                             FEATURE_* of its trains
@@ -10,7 +10,7 @@
 //   real pattern_point(Pattern pattern, int column, int row) const;   only of patterns with a grid
 //   LightField light_field() const;                    only with FEATURE_LIGHT_FIELD
 //   Element element_at(int index) const;              only for non-sequential paths
-//   ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) const;   likewise
+//   ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) const;   only for non-sequential paths
 //   Facet facet_at(int index) const;                  only with FEATURE_FACETS
 //   real lattice_at(int column, int row) const;      only for analytic specimens with a lattice
 //   real material_number(int index) const;            only of materials that have numbers

@@ -45,7 +45,7 @@ VKFV_FUNCTION Draws draws_of_bits(uvec4 bits) {
     return draws;
 }
 
-// A path owns its blocks 0, 1, 2, ...
+// A path's random numbers of one block; its blocks are 0, 1, 2, ...
 VKFV_FUNCTION Draws draw(uint seed, uint image, uvec2 path, uint block) {
     return draws_of_bits(philox_4x32(uvec4(path.x, path.y, block, 0u), seed, image, PHILOX_ROUNDS));
 }

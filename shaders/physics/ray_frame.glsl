@@ -1,12 +1,13 @@
-// Coordinates of a triangle's corners from the ray's origin: two across the ray, the third along it. As in S. Woop,
-// C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2 (2013) 1, a corner has the same ones in every
-// triangle, and the edge functions of neighbours opposite signs on their common edge, since a difference of two rounded
-// products may round to zero but never to the wrong sign; zero counts as inside. So no ray passes between the two, as
-// long as nothing is contracted: hence VKFV_PRECISE. Instead of a shear along the largest axis, a rotation (T. Duff et
-// al., "Building an orthonormal basis, revisited", JCGT 6 (2017) 1).
+// The ray's frame, in which triangle corners have coordinates from the ray's origin: two across the ray, the third
+// along it. As in S. Woop, C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2 (2013) 1, a corner has
+// the same coordinates in every triangle, and the edge functions of neighbours have opposite signs on their common
+// edge, since a difference of two rounded products may round to zero but never to the wrong sign; zero counts as
+// inside. So no ray passes between the two, as long as nothing is contracted: hence VKFV_PRECISE. Instead of a shear
+// along the largest axis, a rotation is used (T. Duff et al., "Building an orthonormal basis, revisited", JCGT 6 (2017)
+// 1).
 struct RayFrame {
     real3 origin;
-    real3 from_x; // the new coordinates of a unit step along x, y, z
+    real3 from_x; // new coordinates of a unit step along x; from_y and from_z: along y and z
     real3 from_y;
     real3 from_z;
 };

@@ -1,10 +1,10 @@
-// Records that host and device share, in scalar layout: physics.hpp compiles them in float for the buffers.
-// A record is a list of its fields, and all that goes through the fields one by one is made of that list: the struct,
-// its rounding from double to float (src/trace/interface/device_records.cpp), what kernels know as constants
-// (device/prescription.glsl), and the probe of the layout (tests/trace/records_test.cpp).
-// Units: mm, W; directions are unit vectors scaled by the refractive index of the medium they travel in.
+// Records that host and device share, in scalar layout: physics.hpp compiles them in float for the buffers. A record is
+// a list of its fields, and code that goes through all fields is made of that list: the struct, its rounding from
+// double to float (src/trace/interface/device_records.cpp), the constants that kernels know (device/prescription.glsl),
+// and the probe of the layout (tests/trace/records_test.cpp). Units are mm and W; directions are unit vectors scaled by
+// the refractive index of the medium they travel in.
 
-// What became of a path. Every path ends with exactly one of these, and the ledger counts each.
+// Status of a path. Every path ends with exactly one of these, and the ledger counts each.
 const uint PATH_ALIVE = 0u;             // still under way: never a final status
 const uint PATH_DETECTED = 1u;          // counted on a pixel
 const uint PATH_OFF_SPECIMEN = 2u;      // the illumination passed beside the specimen's footprint
@@ -12,43 +12,43 @@ const uint PATH_ESCAPED = 3u;           // left the specimen outside the pupil's
 const uint PATH_BOUNCE_LIMIT = 4u;      // would have met the specimen more often than permitted
 const uint PATH_OFF_DETECTOR = 5u;      // reached the detector's plane beside the detector
 const uint PATH_NUMERICAL = 6u;         // a non-finite number or an exhausted rejection loop
-const uint PATH_ABSORBED = 7u;          // by the specimen
+const uint PATH_ABSORBED = 7u;          // absorbed by the specimen
 const uint PATH_INTERACTION_LIMIT = 8u; // non-sequential: met more surfaces than permitted
 const uint PATH_VIGNETTED = 9u;         // stopped by the edge of a surface (a surface index belongs to it)
-const uint PATH_MISSED_SURFACE = 10u;   // a surface of a train does not meet the ray (likewise)
-const uint PATH_TOTAL_REFLECTION = 11u; // totally reflected at a surface (likewise)
-const uint PATH_INTERFACE_LOSS = 12u;   // reflected at a refracting surface, or absorbed by a mirror (likewise)
+const uint PATH_MISSED_SURFACE = 10u;   // a surface of a train does not meet the ray (a surface index belongs to it)
+const uint PATH_TOTAL_REFLECTION = 11u; // totally reflected at a surface (a surface index belongs to it)
+const uint PATH_INTERFACE_LOSS = 12u;   // reflected by an interface, absorbed by a mirror (with a surface index)
 const int PATH_STATUS_COUNT = 13;
 const int SURFACE_STATUS_COUNT = 4; // statuses from PATH_VIGNETTED on
 
 const uint SURFACE_CLIPPED = 1u;      // semi_diameter_squared limits it; without the flag it is unbounded
 const uint SURFACE_ASPHERIC = 2u;     // the even coefficients are not all zero
 const uint SURFACE_FRESNEL = 4u;      // reflects by Fresnel's equations
-const uint SURFACE_LAYER = 8u;        // the same through one thin layer
+const uint SURFACE_LAYER = 8u;        // reflects by Fresnel's equations through one thin layer
 const uint SURFACE_MIRROR = 16u;      // plane; a train is unfolded at it
-const uint SURFACE_IDEAL_LENS = 32u;  // of `power`, instead of an interface
-const uint SURFACE_LIGHT_FIELD = 64u; // lets through what the instrument's LightField says
-const uint SURFACE_TURNED = 128u;     // of that: its frame is the light field's turned half a turn about x
+const uint SURFACE_IDEAL_LENS = 32u;  // an ideal lens of `power` instead of an interface
+const uint SURFACE_LIGHT_FIELD = 64u; // lets through the share that the instrument's LightField gives
+const uint SURFACE_TURNED = 128u;     // its frame is the light field's turned by half a turn about x
 
-// What some instruments have and most have not: kernels are compiled without what is absent.
+// Features that some scenes have and most have not: kernels are compiled without the absent ones.
 const uint FEATURE_PLACEMENT = 1u; // surfaces decentred or tilted against each other
 const uint FEATURE_LOSSES = 2u;    // interfaces that reflect, mirrors that absorb
 const uint FEATURE_SPECTRUM = 4u;  // more than one wavelength
 const uint FEATURE_IDEAL_LENS = 8u;
 const uint FEATURE_RING = 16u;                // a ring light instead of the disc
-const uint FEATURE_DIRECTED_SCATTER = 32u;    // of the trace, not of the instrument: survivors have weights
-const uint FEATURE_PUPIL_CELLS = 128u;        // likewise: light is sorted by where it crosses the pupil
-const uint FEATURE_REFLECTANCE_MAP = 64u;     // of the specimen
+const uint FEATURE_DIRECTED_SCATTER = 32u;    // the trace directs scatter at the gate: survivors have weights
+const uint FEATURE_PUPIL_CELLS = 128u;        // the trace sorts light by where it crosses the pupil
+const uint FEATURE_REFLECTANCE_MAP = 64u;     // the specimen has a map of its reflectance
 const uint FEATURE_RECTANGLE = 256u;          // a rectangle instead of the disc
 const uint FEATURE_FACETS = 512u;             // elements whose form is a mesh
 const uint FEATURE_LIGHT_FIELD = 1024u;       // a pattern or uneven light in the plane of the field stop
 const uint FEATURE_AIMED_RECTANGLE = 2048u;   // directions of the source are a rectangle instead of a disc
-const uint FEATURE_SPECTRAL_MATERIAL = 4096u; // of the specimen: its material changes with the wavelength
+const uint FEATURE_SPECTRAL_MATERIAL = 4096u; // the specimen's material changes with the wavelength
 
-const int SURFACE_CAPACITY = 128;  // surfaces of both trains together that the device's uniform block holds
-const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constants (device/prescription.glsl)
-const int SPECTRUM_CAPACITY = 256; // bins of a spectrum, likewise
-const int RING_CAPACITY = 32;      // segments of a ring light: bits of a mask
+const int SURFACE_CAPACITY = 128;  // most surfaces of both trains together, limited by the device's uniform block
+const int KNOWN_SURFACES = 64;     // most surfaces that a kernel can have as constants (device/prescription.glsl)
+const int SPECTRUM_CAPACITY = 256; // most bins of a spectrum, limited by the device's uniform block
+const int RING_CAPACITY = 32;      // most segments of a ring light, which are bits of a mask
 
 // clang-format off
 
@@ -64,19 +64,19 @@ struct Dispersion {
     VKFV_DISPERSION_FIELDS(VKFV_DECLARE)
 };
 
-// One refracting surface, mirror, ideal lens or stop, in the frame of its own vertex; light travels towards +z.
-// Sag: z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a4 r^4 + ... + a16 r^16 (ISO 10110-12, eq. 5).
-// From the frame of the previous vertex: p' = rotation (p - (decentre_x, decentre_y, distance)).
-// KNOWN: a kernel can have the field of its k-th surface as a constant, the one of the given place in the order of
-// their numbers (device/prescription.glsl).
+// A refracting surface, mirror, ideal lens or stop, in the frame of its own vertex; light travels towards +z.
+// The sag is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a4 r^4 + ... + a16 r^16 (ISO 10110-12, eq. 5).
+// Points come from the frame of the previous vertex by p' = rotation (p - (decentre_x, decentre_y, distance)).
+// KNOWN: a field of the k-th surface that a kernel can have as a constant, with its place in the order of the surface's
+// constants (device/prescription.glsl).
 #define VKFV_SURFACE_FIELDS(FIELD, KNOWN, k) \
     KNOWN(k, 0, real, curvature)             /* 1/mm, positive: centre of curvature towards +z */ \
     KNOWN(k, 1, real, conic)                 /* conic constant k; 0 is a sphere */ \
     KNOWN(k, 2, real, semi_diameter_squared) /* mm^2 */ \
     KNOWN(k, 3, real, distance)              /* mm, from the previous vertex along its z; a train's first: 0 */ \
-    FIELD(real, index_before)                /* at x = 0 */ \
+    FIELD(real, index_before)                /* index at spectral coordinate x = 0 */ \
     KNOWN(k, 4, real, index_after) \
-    KNOWN(k, 5, real, a4)                    /* mm^-3 and so on */ \
+    KNOWN(k, 5, real, a4)                    /* mm^-3, and so on for mm^-5 ... */ \
     KNOWN(k, 6, real, a6) \
     KNOWN(k, 7, real, a8) \
     KNOWN(k, 8, real, a10) \
@@ -85,7 +85,7 @@ struct Dispersion {
     KNOWN(k, 11, real, a16) \
     FIELD(real, decentre_x)                  /* mm */ \
     FIELD(real, decentre_y) \
-    FIELD(real, rotation_xx)                 /* new x from old x, and so on */ \
+    FIELD(real, rotation_xx)                 /* weight of old x in new x, and so on */ \
     FIELD(real, rotation_xy) \
     FIELD(real, rotation_xz) \
     FIELD(real, rotation_yx) \
@@ -94,9 +94,9 @@ struct Dispersion {
     FIELD(real, rotation_zx) \
     FIELD(real, rotation_zy) \
     FIELD(real, rotation_zz) \
-    FIELD(real, power)                       /* 1/mm, of an ideal lens */ \
-    FIELD(real, reflectance)                 /* of a mirror */ \
-    FIELD(real, layer_index)                 /* of the thin layer */ \
+    FIELD(real, power)                       /* 1/mm, for an ideal lens */ \
+    FIELD(real, reflectance)                 /* for a mirror */ \
+    FIELD(real, layer_index)                 /* index of the thin layer */ \
     FIELD(real, layer_thickness)             /* um */ \
     /* 1/mm: what curvature * (index_after - index_before), of the rounded numbers, falls short of; 0 in double. */ \
     KNOWN(k, 13, real, bend_residual) \
@@ -107,25 +107,25 @@ struct Surface {
     VKFV_SURFACE_FIELDS(VKFV_DECLARE, VKFV_DECLARE_KNOWN, 0)
 };
 
-// A ray in some frame; which one the function says.
+// A ray, in the frame that the function states.
 struct Ray {
     real3 position;   // mm
     real3 direction;  // unit vector times the index of the medium
     real path_length; // optical path so far, mm
 };
 
-// What distinguishes one ray's light from another's.
+// Spectral properties of a ray's light, and its draw for losses.
 struct Light {
     real spectral;    // x = (1/lambda^2 - centre) / half-width of the spectrum in 1/lambda^2; in [-1, 1]
     real wave_number; // 1/um, 1/lambda
-    real survival;    // in [0, 1): the light is lost where the surfaces' transmittances multiply to less than this
+    real survival;    // in [0, 1): light is lost where the product of the transmittances is below this
 };
 
-// A stretch of a spectrum whose density changes linearly from (1 - tilt) to (1 + tilt) times its mean.
+// A bin of a spectrum, whose density changes linearly from (1 - tilt) to (1 + tilt) times its mean.
 #define VKFV_SPECTRAL_BIN_FIELDS(FIELD) \
     FIELD(real, cumulative) /* share of the flux in this bin and those before it */ \
     FIELD(real, start)      /* um */ \
-    FIELD(real, stop)       /* um; as start: a line */ \
+    FIELD(real, stop)       /* um; equal to start for a line */ \
     FIELD(real, tilt)
 struct SpectralBin {
     VKFV_SPECTRAL_BIN_FIELDS(VKFV_DECLARE)
@@ -148,27 +148,27 @@ struct RingLight {
 };
 
 const uint ELEMENT_INTERFACE = 0u;
-const uint ELEMENT_STOP = 1u; // passes what is within its aperture
+const uint ELEMENT_STOP = 1u; // passes light within its aperture
 const uint ELEMENT_MIRROR = 2u;
 const uint ELEMENT_SPLITTER = 3u;
 const uint ELEMENT_IDEAL_LENS = 4u;
 const uint ELEMENT_DETECTOR = 5u;
 const uint ELEMENT_BARREL = 6u;   // an absorbing tube about z
-const uint ELEMENT_ABSORBER = 7u; // of facets alone
+const uint ELEMENT_ABSORBER = 7u; // absorbs; has facets alone
 
-// An element as it stands in the room, for non-sequential tracing. Each is absorbing around its free aperture (the
-// surface's semi-diameter): its mount is the same surface out to rim_radius, and from there the plane z = rim_height.
+// An element as it stands in space, for non-sequential tracing. It absorbs around its free aperture (the surface's
+// semi-diameter): its mount is the same surface out to rim_radius, and from there the plane z = rim_height.
 #define VKFV_ELEMENT_FIELDS(FIELD) \
     FIELD(Surface, surface)    /* in its own frame; its transfer from another is not used */ \
-    FIELD(real3, origin)       /* of that frame, mm */ \
+    FIELD(real3, origin)       /* mm, of the element's frame */ \
     FIELD(real3, axis_x)       /* unit vectors */ \
     FIELD(real3, axis_y) \
     FIELD(real3, axis_z) \
     FIELD(real, rim_radius)    /* mm */ \
     FIELD(real, rim_height) \
-    FIELD(real, outer_radius)  /* of the mount, or of a barrel */ \
-    FIELD(real, barrel_length) /* along z */ \
-    FIELD(real, transmittance) /* of a splitter; its reflectance is the surface's */ \
+    FIELD(real, outer_radius)  /* mm, of the mount or of a barrel */ \
+    FIELD(real, barrel_length) /* mm, along z */ \
+    FIELD(real, transmittance) /* transmittance of a splitter; its reflectance is the surface's */ \
     FIELD(uint, kind)          /* ELEMENT_* */
 struct Element {
     VKFV_ELEMENT_FIELDS(VKFV_DECLARE)
@@ -179,28 +179,28 @@ struct Element {
     FIELD(real3, corner_a) /* mm; of a closed mesh counter-clockwise seen from outside */ \
     FIELD(real3, corner_b) \
     FIELD(real3, corner_c) \
-    FIELD(real3, normal)   /* unit, to where the corners go round counter-clockwise */ \
+    FIELD(real3, normal)   /* unit, towards the side from which the corners are counter-clockwise */ \
     FIELD(int, element)    /* index of its element */ \
-    FIELD(uint, closed)    /* 1: of a closed mesh, which light meets from the side alone that it is on */
+    FIELD(uint, closed)    /* 1: part of a closed mesh, which light meets only from the side that it is on */
 struct Facet {
     VKFV_FACET_FIELDS(VKFV_DECLARE)
 };
 
-// The nearest element on a ray's way.
+// The nearest element along a ray.
 struct ElementHit {
     int index;     // -1: none
-    int facet;     // of its mesh; -1: it is no mesh
+    int facet;     // facet of its mesh; -1: the element is no mesh
     real distance; // mm
 };
 
-// Where a path is between two meetings.
+// The place of a path between two meetings.
 struct PathPlace {
-    int element; // that it comes from; -1: none, or a mesh
-    int facet;   // likewise; -1: none
-    int inside;  // the element of a closed mesh that it is in; -1: none
+    int element; // element that the path comes from; -1: none, or a mesh
+    int facet;   // facet that the path comes from; -1: none
+    int inside;  // element of the closed mesh that the path is in; -1: none
 };
 
-// Where the source stands in the room.
+// The frame of the source in space, in mm and unit vectors.
 #define VKFV_SOURCE_FRAME_FIELDS(FIELD) \
     FIELD(real3, origin) \
     FIELD(real3, axis_x) \
@@ -213,10 +213,10 @@ struct SourceFrame {
 const uint PATTERN_GRATING = 0u;
 const uint PATTERN_CHECKERBOARD = 1u;
 const uint PATTERN_STAR = 2u;
-const uint PATTERN_GRID = 3u; // of an image's pixels, or of noise
+const uint PATTERN_GRID = 3u; // points are an image's pixels, or noise
 
-// Factors over a plane: pattern.glsl. Of the specimen's reflectance with FEATURE_REFLECTANCE_MAP, of the light in the
-// plane of the field stop with FEATURE_LIGHT_FIELD.
+// A pattern of factors over a plane (pattern.glsl): the specimen's reflectance with FEATURE_REFLECTANCE_MAP, the light
+// in the plane of the field stop with FEATURE_LIGHT_FIELD.
 #define VKFV_PATTERN_FIELDS(FIELD) \
     FIELD(real, lowest)   /* factors, of the pattern's values 0 and 1 */ \
     FIELD(real, highest) \
@@ -225,37 +225,38 @@ const uint PATTERN_GRID = 3u; // of an image's pixels, or of noise
     FIELD(real, axis_x)   /* unit vector along the pattern's x */ \
     FIELD(real, axis_y) \
     FIELD(real, per_mm)   /* periods of a grating, squares of a checkerboard, points of a grid; a star's: 1 */ \
-    FIELD(int, cycles)    /* of a star, in one turn */ \
-    FIELD(int, columns)   /* of a grid */ \
+    FIELD(int, cycles)    /* periods of a star in one turn */ \
+    FIELD(int, columns)   /* points of a grid along x */ \
     FIELD(int, rows) \
     FIELD(uint, square)   /* 1: a grating or star of two levels, 0: sinusoidal */ \
-    FIELD(uint, of_light) /* whose grid it is: 1 the light field's, 0 the specimen's */ \
+    FIELD(uint, of_light) /* grid that the pattern reads: 1 the light field's, 0 the specimen's */ \
     FIELD(uint, kind)     /* PATTERN_* */
 struct Pattern {
     VKFV_PATTERN_FIELDS(VKFV_DECLARE)
 };
 
-// What the plane of the illumination's field stop lets through: light_field.glsl. In the frame of that surface.
+// The light that the plane of the illumination's field stop lets through (light_field.glsl), in the frame of that
+// surface.
 #define VKFV_LIGHT_FIELD_FIELDS(FIELD) \
     FIELD(Pattern, pattern) \
-    FIELD(real, falloff)     /* 1/mm^2, of the square of the distance from the brightest place */ \
+    FIELD(real, falloff)     /* 1/mm^2, factor of the squared distance from the brightest place */ \
     FIELD(real, brightest_x) /* mm */ \
     FIELD(real, brightest_y)
 struct LightField {
     VKFV_LIGHT_FIELD_FIELDS(VKFV_DECLARE)
 };
 
-// The chain that light goes through, but for the specimen and the scan's position. Its gate is the pupil's outline, made
-// linear and wide enough that no ray outside it reaches the detector:
+// The optical chain of source, trains and detector, without the specimen and the scan's position. Its gate (the
+// acceptance bound) is the pupil's outline, made linear and wide enough that no ray outside it reaches the detector:
 //   |gate_position * (x, y) + gate_slope * (dx/dz, dy/dz)| <= gate_radius,  x, y in mm on the specimen's top plane.
 #define VKFV_INSTRUMENT_FIELDS(FIELD) \
     FIELD(real, source_radius)       /* mm, a flat Lambertian disc */ \
     FIELD(real, source_half_width)   /* mm, a rectangle in its place: along x of the source's frame */ \
     FIELD(real, source_half_height)  /* along y */ \
     FIELD(real, source_distance)     /* mm, from the source to the first vertex of the illumination train */ \
-    FIELD(real, emission_sine)       /* of the directions aimed into: source.glsl; 1 is the whole hemisphere */ \
-    FIELD(real, emission_shift)      /* 1/mm, by which their middle moves with the place; 0 for a ring light */ \
-    FIELD(real, emission_half_width) /* of the rectangle that is aimed into instead; emission_sine is its corners' */ \
+    FIELD(real, emission_sine)       /* sine of the cone of aimed directions (source.glsl); 1: the hemisphere */ \
+    FIELD(real, emission_shift)      /* 1/mm, shift of the cone's middle with the place; 0 for a ring light */ \
+    FIELD(real, emission_half_width) /* half-sides of a rectangle in its place; emission_sine: of its corners */ \
     FIELD(real, emission_half_height) \
     FIELD(real, magnification)       /* lateral, signed: detector over object */ \
     FIELD(real, detector_distance)   /* mm, from the last vertex of the imaging train to the detector */ \
@@ -264,9 +265,9 @@ struct LightField {
     FIELD(real, gate_position) \
     FIELD(real, gate_slope) \
     FIELD(real, gate_radius) \
-    FIELD(real, spectrum_centre)     /* 1/um^2, of 1/lambda^2: x = 0 */ \
-    FIELD(real, spectrum_half_width) /* 1/um^2; x = 1 is this far from it */ \
-    FIELD(real, specimen_index)      /* of the medium over the specimen, at x = 0 */ \
+    FIELD(real, spectrum_centre)     /* 1/um^2, value of 1/lambda^2 at x = 0 */ \
+    FIELD(real, spectrum_half_width) /* 1/um^2, half-width of the spectrum, x = 1 */ \
+    FIELD(real, specimen_index)      /* index of the medium over the specimen, at x = 0 */ \
     FIELD(Dispersion, specimen_dispersion) \
     FIELD(RingLight, ring) \
     FIELD(LightField, light_field) \
@@ -275,7 +276,7 @@ struct LightField {
     FIELD(int, illumination_count) \
     FIELD(int, imaging_first) \
     FIELD(int, imaging_count) \
-    FIELD(real, pixel_reach)         /* half the side of what is sensitive of a pixel, in pixels; 1: all of it */ \
+    FIELD(real, pixel_reach)         /* half the side of a pixel's sensitive part, in pixels; 1: all is sensitive */ \
     FIELD(int, detector_columns)     /* pixels, which are square */ \
     FIELD(int, detector_rows)
 struct Instrument {
@@ -294,7 +295,7 @@ const uint SHAPE_CHIRP = 4u;
 
 const int LOBE_TABLE_SIZE = 16;
 
-// One way in which a material scatters; shaders/physics/scatter/ has the models.
+// A lobe of a material's scatter; shaders/physics/scatter/ has the models.
 #define VKFV_LOBE_FIELDS(FIELD, ARRAY) \
     FIELD(uint, model)                  /* SCATTER_* */ \
     FIELD(real, weight)                 /* share of the incident light */ \
@@ -339,46 +340,46 @@ struct Material {
     FIELD(int, columns)            /* points of the height field or lattice; 0 x 0: none */ \
     FIELD(int, rows) \
     FIELD(int, max_bounces)        /* scatter events permitted */ \
-    FIELD(int, material_spectral_points) /* of FEATURE_SPECTRAL_MATERIAL, at least 2 */ \
+    FIELD(int, material_spectral_points) /* with FEATURE_SPECTRAL_MATERIAL, at least 2 */ \
     FIELD(uint, kind)              /* SPECIMEN_* */ \
     FIELD(uint, shape)             /* SHAPE_* */
 struct SpecimenRecord {
     VKFV_SPECIMEN_RECORD_FIELDS(VKFV_DECLARE)
 };
 
-// What changes from image to image.
+// Quantities that change from image to image.
 #define VKFV_EXPOSURE_FIELDS(FIELD) \
     FIELD(real, top_distance)          /* mm, along the axis from the objective's front vertex to the top plane */ \
     FIELD(uint, seed) \
     FIELD(uint, image) \
     FIELD(real, focal_height)          /* mm, of the focal plane in the specimen frame: z of the image */ \
     FIELD(real, top_distance_residual) /* mm, what rounding took from top_distance; 0 in double */ \
-    FIELD(real, beside_x)              /* mm, where the specimen stands beside its place on the axis */ \
+    FIELD(real, beside_x)              /* mm, displacement of the specimen from its place on the axis */ \
     FIELD(real, beside_y)
 struct Exposure {
     VKFV_EXPOSURE_FIELDS(VKFV_DECLARE)
 };
 
-// Where a ray meets the specimen (specimen frame).
+// A ray's meeting with the specimen (specimen frame).
 struct Hit {
     uint found;    // 1: met, 0: not
-    real distance; // along the ray, mm for a unit direction
+    real distance; // mm along the ray, whose direction is a unit vector
     real3 position;
     real3 normal; // unit, on the side of +z for height fields and analytic surfaces, against the ray for meshes
 };
 
-const uint SURVIVOR_TO_TEST = 1u; // whether it meets the specimen again is not yet known
-const uint SURVIVOR_TWIN = 2u;    // if it does it counts nowhere, since its path's own light went on
-const uint SURVIVOR_BESIDE = 4u;  // its path's own light is counted elsewhere, whole
+const uint SURVIVOR_TO_TEST = 1u; // occlusion by the specimen is not yet tested
+const uint SURVIVOR_TWIN = 2u;    // counts nowhere if occluded, since its path's own light went on
+const uint SURVIVOR_BESIDE = 4u;  // its path's own light is counted in full elsewhere
 const int SURVIVOR_WEIGHT_BIT = 3;
 const uint WEIGHT_ONE = 0x400000u; // weights are multiples of 2^-22, so that their sums do not depend on the order
 
-// Light that leaves the specimen towards the objective, between the two passes.
+// Light that leaves the specimen towards the objective, between the two halves of the forward trace.
 #define VKFV_SURVIVOR_FIELDS(FIELD) \
     FIELD(real3, position)   /* specimen frame, on the specimen */ \
     FIELD(real, direction_x) /* unit; z is recomputed, positive */ \
     FIELD(real, direction_y) \
-    FIELD(real, spectral)    /* its Light in the imaging train */ \
+    FIELD(real, spectral)    /* spectral coordinate of its Light in the imaging train */ \
     FIELD(real, survival) \
     /* SURVIVOR_*, and with directed scatter its weight / 2^-22 from SURVIVOR_WEIGHT_BIT on */ \
     FIELD(uint, mark)
@@ -388,7 +389,7 @@ struct Survivor {
 
 // clang-format on
 
-// How a path ended, and where the ledger counts it.
+// The end of a path, and the slot of the ledger that counts it.
 struct Fate {
     uint status; // PATH_*
     int surface; // index into the surfaces for the statuses that belong to one, else -1

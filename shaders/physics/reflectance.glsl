@@ -1,7 +1,7 @@
-// What a map leaves of the material's reflectance where light meets the specimen: a factor over x and y of the specimen
-// frame, whatever the height. And what the wavelength makes of a material.
+// Reflectance of the specimen where light meets it: a map's factor of the material's reflectance over x and y of the
+// specimen frame, whatever the height; and the change of a material with the wavelength.
 
-// The share of its material's reflectance that the specimen has there: 1 without a map.
+// The map's factor of the material's reflectance at a position: 1 without a map.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real reflectance_share(VKFV_SCENE_PARAMETER SpecimenRecord specimen, real3 position) {
     real share = real(1.0);
     if ((features(VKFV_SCENE_ALONE) & FEATURE_REFLECTANCE_MAP) != 0u) {
@@ -10,7 +10,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real reflectance_share(VKFV_SCENE_PARAMETER Sp
     return share;
 }
 
-// The material there: what the map takes is absorbed.
+// The material at a position: light that the map takes off is absorbed.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Material material_at(VKFV_SCENE_PARAMETER SpecimenRecord specimen, real3 position) {
     Material material = specimen.material;
     if ((features(VKFV_SCENE_ALONE) & FEATURE_REFLECTANCE_MAP) != 0u) {
@@ -23,14 +23,14 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Material material_at(VKFV_SCENE_PARAMETER Spec
     return material;
 }
 
-// The spectrum of a material stands first among its numbers (material_number()): points of ascending wavelength, linear
-// in between, and held beyond the ends. A point is the wavelength, um, then of each of the four lobes: the factor of
-// its weight, and the real and the imaginary part of its refractive index, 0 where the model has none.
+// A material's spectrum stands first among its numbers (material_number()): points of ascending wavelength, linear in
+// between, and held beyond the ends. A point is the wavelength, um, then for each of the four lobes: the factor of its
+// weight, and the real and the imaginary part of its refractive index, 0 where the model has none.
 const int SPECTRAL_POINT_NUMBERS = 13;
 
 struct SpectralPlace {
-    int below;  // first number of a point
-    real share; // of the way to the next point
+    int below;  // first number of the point below the wavelength
+    real share; // fraction of the way to the next point
 };
 
 VKFV_SCENE_FUNCTION VKFV_FUNCTION SpectralPlace spectral_place(VKFV_SCENE_PARAMETER int points, real wavelength) {
@@ -57,7 +57,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real spectral_value(VKFV_SCENE_PARAMETER Spect
                material_number(VKFV_SCENE place.below + SPECTRAL_POINT_NUMBERS + number), place.share);
 }
 
-// number: of the lobe's first value within a point.
+// A lobe at one wavelength. number: index of the lobe's first value within a point.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Lobe lobe_at_wavelength(VKFV_SCENE_PARAMETER Lobe lobe, SpectralPlace place,
                                                           int number) {
     Lobe result = lobe;
@@ -78,8 +78,8 @@ VKFV_FUNCTION Lobe lobe_in_medium(Lobe lobe, real index) {
     return result;
 }
 
-// The material as this light meets it: its reflectance and its refractive indices, which become relative to that of the
-// medium over the specimen.
+// The material at the light's wavelength: its reflectance, and its refractive indices, which become relative to that of
+// the medium over the specimen.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Material material_of_light(VKFV_SCENE_PARAMETER Instrument instrument,
                                                              SpecimenRecord specimen, Material material, Light light) {
     Material result = material;

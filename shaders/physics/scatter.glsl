@@ -4,8 +4,8 @@
 // side, also for a path that is traced backward, so a backward path gives scatter_density() its own direction reversed
 // as `outgoing`.
 
-// By one number, uniform in (0, 1): a lobe with the probability of its weight, else SCATTER_NONE. Unused lobes have
-// the weight 0.
+// Chooses a lobe by one number, uniform in (0, 1), with the probability of its weight, or SCATTER_NONE. Unused lobes
+// have the weight 0.
 VKFV_FUNCTION Lobe choose_lobe(Material material, real u) {
     Lobe lobe = material.lobe_0;
     real bound = lobe.weight;
@@ -32,9 +32,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real weighted_bsdf(VKFV_SCENE_PARAMETER Lobe l
     return lobe.weight > real(0.0) ? lobe.weight * lobe_bsdf(VKFV_SCENE lobe, incidence, outgoing) : real(0.0);
 }
 
-// Share of the incident light per sr of the unit direction outgoing, divided by the cosine of its angle with the
-// normal, 1/sr: finite at grazing, 0 unless both directions are above the surface. Deltas, which have no density, count
-// nothing. incoming: unit, towards the surface; normal: unit, on the incoming side.
+// The material's BSDF: share of the incident light per sr of the unit direction outgoing, divided by the cosine of its
+// angle with the normal, 1/sr. It is finite at grazing angles, and 0 unless both directions are above the surface.
+// Deltas, which have no density, count as 0. incoming: unit, towards the surface; normal: unit, on the incoming side.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real scatter_bsdf(VKFV_SCENE_PARAMETER Material material, real3 incoming,
                                                     real3 normal, real3 outgoing) {
     Incidence incidence = make_incidence(incoming, normal);
@@ -47,27 +47,27 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real scatter_bsdf(VKFV_SCENE_PARAMETER Materia
     return dot(incoming, normal) < real(0.0) && dot(outgoing, normal) > real(0.0) ? bsdf : real(0.0);
 }
 
-// The same per sr of the outgoing direction: its integral over the hemisphere is the reflectance,
-// less what lossy lobes absorb.
+// The BSDF times the cosine, per sr of the outgoing direction: its integral over the hemisphere is the reflectance,
+// less the share that lossy lobes absorb.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real scatter_density(VKFV_SCENE_PARAMETER Material material, real3 incoming,
                                                        real3 normal, real3 outgoing) {
     return scatter_bsdf(VKFV_SCENE material, incoming, normal, outgoing) * max(dot(outgoing, normal), real(0.0));
 }
 
-// Henyey-Greenstein's acceptance is no less than about cos(theta_i) for sharp lobes with g > 0, and about 0.01 for
-// g = -0.9, the least that a configuration may ask for: 2048 tries, half of those that there are, fail less than once
-// in 1e8 for incidence up to 89.4 degrees. What fails is counted as numerical. A scatter event owns so many blocks of
-// random numbers: two tries each, the last one directed scatter's.
+// Blocks of random numbers that a scatter event owns: two tries each; the last block is directed scatter's.
+// Henyey-Greenstein's acceptance is no less than about cos(theta_i) for sharp lobes with g > 0, and about 0.01 for g =
+// -0.9, the least that a configuration may ask for: 2048 tries, half of the available ones, fail less than once in 1e8
+// for incidence up to 89.4 degrees. Failed events are counted as numerical.
 const uint SCATTER_BLOCKS = 2048u;
 
 struct Scattered {
-    bool accepted; // else absorbed, or tries exhausted
+    bool accepted; // false: absorbed, or tries exhausted
     bool absorbed;
     real3 direction;
-    Lobe lobe; // that was chosen; if none was, its model is SCATTER_NONE
+    Lobe lobe; // the chosen lobe; if none was chosen, its model is SCATTER_NONE
 };
 
-// Of the first block of a scatter event.
+// The lobe that the first block of a scatter event chooses.
 VKFV_FUNCTION Lobe scattering_lobe(Material material, Draws draws) {
     Lobe lobe = material.lobe_0;
     if ((scatter_models & SCATTER_CHOICE) != 0u) {
@@ -76,7 +76,8 @@ VKFV_FUNCTION Lobe scattering_lobe(Material material, Draws draws) {
     return lobe;
 }
 
-// blocks: of random numbers at most, two tries each; the first block's second try where its numbers choose no lobe.
+// Scatter by rejection. most_blocks: of random numbers, two tries each, but one where the first block's numbers also
+// choose a lobe.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Scattered scatter_by_tries(VKFV_SCENE_PARAMETER Material material,
                                                              Incidence incidence, uint seed, uint image, uvec2 path,
                                                              uint first_block, uint most_blocks) {
@@ -85,11 +86,11 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Scattered scatter_by_tries(VKFV_SCENE_PARAMETE
     result.accepted = false;
     result.absorbed = false;
     result.direction = incidence.mirror;
-    // Light from behind the surface is a rounding fault (it slipped between facets): not scattered, but counted.
+    // Light from behind the surface is a rounding fault (it slipped between facets): it is not scattered, but counted.
     uint blocks = dot(incidence.incoming, incidence.normal) < real(0.0) ? most_blocks : 0u;
     for (uint block = 0u; block < blocks && !result.accepted && !result.absorbed; ++block) {
         Draws draws = draw(seed, image, path, first_block + block);
-        // Of the material, so that host and device ask alike.
+        // The test is of the material, so that host and device take the same branch.
         bool chooses = (scatter_models & SCATTER_CHOICE) != 0u && block == 0u && material.lobe_0.weight < real(1.0);
         if (chooses) {
             lobe = scattering_lobe(material, draws);
@@ -109,7 +110,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Scattered scatter_by_tries(VKFV_SCENE_PARAMETE
     return result;
 }
 
-// incoming: unit, towards the surface; normal: unit, on the incoming side.
+// Scatter at a point of the specimen. incoming: unit, towards the surface; normal: unit, on the incoming side.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Scattered scatter(VKFV_SCENE_PARAMETER Material material, real3 incoming,
                                                     real3 normal, uint seed, uint image, uvec2 path, uint first_block) {
     return scatter_by_tries(VKFV_SCENE material, make_incidence(incoming, normal), seed, image, path, first_block,

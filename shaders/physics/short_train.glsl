@@ -1,28 +1,28 @@
-// Light through a train of centred surfaces without a question at each: trace_train() in its short form. What the
-// sequential model does not allow (a surface missed, total reflection) makes a radicand negative, and the not-a-number
-// goes through to the end, where it is seen; only then is the ray traced again in the long form, which tells what
-// became of it and where. Of edges one predicate is kept, and how many surfaces were passed while it held.
+// trace_train() in its short form: light through a train of centred surfaces without a branch at each. A surface missed
+// or total reflection makes a radicand negative, and the not-a-number goes through to the end, where it is seen; only
+// then is the ray traced again in the long form, which finds its status and surface. For edges one predicate is kept,
+// and the number of surfaces that were passed while it held.
 
-// Instruments that have none of these go the short way.
+// Features that need the long form; other instruments are traced in the short form.
 const uint FEATURES_OF_LONG_TRAINS = FEATURE_PLACEMENT | FEATURE_LOSSES | FEATURE_IDEAL_LENS;
 
-// How well the short way keeps a float's digits: to nanometres, as the detector asks, or to a tenth of a micrometre,
-// for light of the source, of which it matters little where on the specimen it ends.
+// Accuracy of the short form in float: to nanometres, as the detector needs, or to a tenth of a micrometre, for light
+// of the source, whose place on the specimen matters little.
 const uint SHORT_TRAIN_FINE = 1u;
 const uint SHORT_TRAIN_PLAIN = 2u;
 
 struct ShortTrain {
     real3 position;
-    real3 direction; // of the length of the index
+    real3 direction; // as long as the index
     real steepness;  // 1 / direction.z
-    real index;      // of the medium it is in
-    bool within;     // every edge so far
-    int passed;      // surfaces, while it was
+    real index;      // index of the medium that the ray is in
+    bool within;     // true while the ray was within every edge so far
+    int passed;      // number of surfaces passed while it was within
 };
 
-// A sphere or plane, as meet_conic() and refract_scaled(), whose questions are left out: for a sphere the discriminant
-// is negative wherever the ray comes to the vertex's plane from behind the surface (G <= 0 there, and |G| is then less
-// than c r |d|).
+// Passes a sphere or plane as meet_conic() and refract_scaled() do, without their branches: for a sphere the
+// discriminant is negative wherever the ray comes to the vertex's plane from behind the surface (G <= 0 there, and |G|
+// is then less than c r |d|).
 VKFV_FUNCTION ShortTrain pass_sphere(Surface surface, ShortTrain before, real index_after, uint form) {
     real3 d = before.direction;
     real c = surface.curvature;
@@ -69,15 +69,15 @@ VKFV_FUNCTION ShortTrain pass_sphere(Surface surface, ShortTrain before, real in
     return after;
 }
 
-// Newton's method as in meet_surface(), with fewer steps: the second leaves less than a tenth of a micrometre of what a
-// polynomial adds to its conic, as each error is about the last one's square over the radius. Light that has not come
-// so near is traced in the long form.
+// Newton's method as in meet_surface(), with fewer steps: the second leaves less than a tenth of a micrometre of the
+// part that a polynomial adds to its conic, as each error is about the square of the last over the radius. Light that
+// has not converged so far is traced in the long form.
 #ifdef __cplusplus
 const int PLAIN_NEWTON_STEPS = ASPHERE_NEWTON_STEPS;
 #else
 const int PLAIN_NEWTON_STEPS = 2;
 #endif
-// mm, the last step at most: its square over a radius of 1 mm is a tenth of a micrometre.
+// Limit of the last step, mm: its square over a radius of 1 mm is a tenth of a micrometre.
 const real PLAIN_NEWTON_LAST = real(0.01);
 
 VKFV_FUNCTION ShortTrain pass_asphere_plainly(Surface surface, ShortTrain before, real index_after) {
@@ -119,7 +119,7 @@ VKFV_FUNCTION ShortTrain pass_asphere_plainly(Surface surface, ShortTrain before
     return after;
 }
 
-// The same by the long form's functions.
+// Passes an asphere by the long form's functions.
 VKFV_FUNCTION ShortTrain pass_asphere(Surface surface, ShortTrain before, real index_after) {
     real3 start = real3(before.position.x, before.position.y, before.position.z - surface.distance);
     SurfacePoint meeting = meet_surface(start, before.direction, before.index * before.index, surface);
@@ -161,7 +161,8 @@ VKFV_FUNCTION ShortTrain enter_short_train(Ray ray, real index) {
     return way;
 }
 
-// ray: as it entered. Of light that has gone astray the long form tells.
+// The result of a train passed in the short form. ray: as it entered, since light that has gone astray is traced again
+// in the long form.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult leave_short_train(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
                                                                 real index, Light light, ShortTrain way) {
     TrainResult result = enter_train(ray, index);
@@ -170,7 +171,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult leave_short_train(VKFV_SCENE_PARAM
     result.index = way.index;
     result.status = way.within ? PATH_ALIVE : PATH_VIGNETTED;
     result.surface = way.within ? -1 : first + way.passed;
-    // Not by a question that a not-a-number could pass if it were turned round.
+    // The test is such that a not-a-number fails it.
     bool sound = abs(way.position.x) + abs(way.position.y) < real(1e30) && abs(way.direction.z) < real(1e30) &&
                  ray.direction.z > real(0.0);
     if (!sound) {
@@ -179,7 +180,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult leave_short_train(VKFV_SCENE_PARAM
     return result;
 }
 
-// trace_short_train() of surfaces that a kernel does not know.
+// trace_short_train() for surfaces that are no constants of the kernel.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_short_train_by_loop(VKFV_SCENE_PARAMETER int first, int count,
                                                                         Ray ray, real index, Light light, uint form) {
     uint present = features(VKFV_SCENE_ALONE);
@@ -196,7 +197,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_short_train_by_loop(VKFV_SCE
     return result;
 }
 
-// As trace_train() with apertures; of the result's path length and transmittance nothing is known.
+// trace_train() with apertures in the short form; the result's path length and transmittance are not computed.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_short_train(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
                                                                 real index, Light light, uint form) {
 #ifdef VKFV_SPECIALISED

@@ -1,13 +1,13 @@
-// Light sources, all Lambertian: uniform radiance, so that the position is uniform over the area and the direction,
-// a unit vector (l, m, n), is uniform in (l, m): the unit disc is the whole hemisphere. A source is aimed where only
-// the disc of radius emission_sine about a middle is drawn from; where it lies within the unit disc it holds the share
-// emission_sine^2 of the flux, exactly and from every point. The middle is emission_shift times the place at the
-// source, so that light from all of it goes where the optics take light from; with 0 the disc is a cone about the
-// normal. In place of the disc may stand a rectangle.
+// Light sources, all Lambertian: uniform radiance, so that the position is uniform over the area and the direction, a
+// unit vector (l, m, n), is uniform in (l, m): the unit disc is the whole hemisphere. An aimed source draws only from
+// the disc of radius emission_sine about a middle; if it lies within the unit disc it holds the share emission_sine^2
+// of the flux, exactly and from every point. The middle is emission_shift times the place at the source, so that light
+// from all of it goes where the optics accept light from; with 0 the disc is a cone about the normal. A rectangle may
+// stand in place of the disc.
 
-// cos and sin of 2 pi u, for any u: GLSL's own are bounded to 2^-11 alone, and beyond [-pi, pi] not at all. Polynomials
-// in r^2 for |r| <= 1/8, r the share of a turn from the nearest quarter, through the functions' values at Chebyshev's
-// nodes: off by less than the rounding of a double, on devices of a float (2.4e-9).
+// cos and sin of 2 pi u, for any u, since GLSL's own are bounded to 2^-11 alone, and beyond [-pi, pi] not at all. They
+// are polynomials in r^2 for |r| <= 1/8, r the share of a turn from the nearest quarter, through the functions' values
+// at Chebyshev's nodes: off by less than the rounding of a double, on devices of a float (2.4e-9).
 struct Turn {
     real cosine;
     real sine;
@@ -45,18 +45,19 @@ VKFV_FUNCTION Turn turn_of(real u) {
     return turn;
 }
 
-// In the frame of the emitting area, towards +z. middle: (l, m).
+// A direction uniform over the disc of radius emission_sine about `middle` (l, m); frame of the emitting area, towards
+// +z.
 VKFV_FUNCTION real3 aimed_direction(real2 middle, real emission_sine, real u0, real u1) {
     real sine_squared = emission_sine * emission_sine * u0;
     real sine = sqrt(sine_squared);
     Turn psi = turn_of(u1);
     real2 beside = real2(sine * psi.cosine, sine * psi.sine);
-    // |middle + beside|^2, which is small: what is taken from 1 is rounded once.
+    // |middle + beside|^2 is small, so that its difference from 1 is rounded once.
     real across_squared = sine_squared + dot(middle, middle + beside + beside);
     return real3(middle.x + beside.x, middle.y + beside.y, sqrt(max(real(1.0) - across_squared, real(0.0))));
 }
 
-// middle, half_sides: (l, m), the rectangle's sides along x and y.
+// A direction uniform over a rectangle of (l, m). middle: (l, m); half_sides: of the rectangle along x and y.
 VKFV_FUNCTION real3 direction_in_rectangle(real2 middle, real2 half_sides, real u0, real u1) {
     real2 beside = real2(half_sides.x * (real(2.0) * u0 - real(1.0)), half_sides.y * (real(2.0) * u1 - real(1.0)));
     real across_squared = dot(beside, beside) + dot(middle, middle + beside + beside);
@@ -67,7 +68,7 @@ VKFV_FUNCTION real3 lambertian_direction(real emission_sine, real u0, real u1) {
     return aimed_direction(real2(real(0.0), real(0.0)), emission_sine, u0, u1);
 }
 
-// A flat disc about the origin in z = 0.
+// A ray from a flat disc about the origin in z = 0.
 VKFV_FUNCTION Ray emit_from_disc(real radius, real emission_sine, real emission_shift, real u0, real u1, real u2,
                                  real u3) {
     real rho = radius * sqrt(u0);
@@ -79,7 +80,7 @@ VKFV_FUNCTION Ray emit_from_disc(real radius, real emission_sine, real emission_
     return ray;
 }
 
-// A flat rectangle about the origin in z = 0.
+// A ray from a flat rectangle about the origin in z = 0.
 VKFV_FUNCTION Ray emit_from_rectangle(real half_width, real half_height, real emission_sine, real emission_shift,
                                       real u0, real u1, real u2, real u3) {
     Ray ray;
@@ -90,12 +91,12 @@ VKFV_FUNCTION Ray emit_from_rectangle(real half_width, real half_height, real em
     return ray;
 }
 
-// A ring light about the z axis that shines on the origin from z < 0. Its band lies on a cone: at w across the band,
-// from the ring's inside, its radius is r - w sin(elevation), and so is its share of the area.
+// A point of a ring light about the z axis that shines on the origin from z < 0. The ring's band lies on a cone: at w
+// across the band, from the ring's inside, its radius is r - w sin(elevation), and so is its share of the area.
 struct RingPoint {
     real3 position;
-    real3 normal; // towards the light's way
-    real3 across; // the band, inwards
+    real3 normal; // unit, towards the lit side
+    real3 across; // unit, across the band, inwards
     real3 around;
 };
 
@@ -107,7 +108,7 @@ VKFV_FUNCTION int segments_on(RingLight ring) {
     return on;
 }
 
-// Uniform over the area that shines.
+// A point uniform over the area that shines.
 VKFV_FUNCTION RingPoint ring_point(RingLight ring, real u0, real u1) {
     int on = segments_on(ring);
     real scaled = u0 * real(on);
@@ -123,13 +124,13 @@ VKFV_FUNCTION RingPoint ring_point(RingLight ring, real u0, real u1) {
     real within = real(0.5) + ring.fill * (scaled - real(wanted) - real(0.5));
     Turn azimuth = turn_of((real(chosen) + within) / real(ring.segments));
     real radius = ring.distance * ring.elevation_cosine;
-    // The w whose share of the area is u1: r (w + h) - sin (w^2 - h^2) / 2 = 2 r h u1.
+    // w is where the share of the area is u1: r (w + h) - sin (w^2 - h^2) / 2 = 2 r h u1.
     real constant =
         ring.half_width * (real(2.0) * radius * u1 - radius - real(0.5) * ring.elevation_sine * ring.half_width);
     real w = real(2.0) * constant /
              (radius + sqrt(max(radius * radius - real(2.0) * ring.elevation_sine * constant, real(0.0))));
     real rho = radius - w * ring.elevation_sine;
-    // This frame is the specimen's turned half a turn about x: y and z change sign.
+    // Outward and axis are in this frame, which is the specimen's turned by half a turn about x: y and z change sign.
     real3 outward = real3(azimuth.cosine, -azimuth.sine, real(0.0));
     real3 axis = real3(real(0.0), real(0.0), real(1.0));
     RingPoint point;
@@ -150,22 +151,22 @@ VKFV_FUNCTION Ray emit_from_ring(RingLight ring, real emission_sine, real u0, re
     return ray;
 }
 
-// mm^2, of all that shines.
+// Area of the segments that shine, mm^2.
 VKFV_FUNCTION real ring_area(RingLight ring) {
     real all = real(4.0) * real(3.14159265358979324) * ring.distance * ring.elevation_cosine * ring.half_width;
     return all * ring.fill * real(segments_on(ring)) / real(ring.segments);
 }
 
-// Where a ray meets what shines of a ring light, from its inside.
+// The meeting of a ray with the segments that shine of a ring light, from its inside.
 struct RingMeeting {
     bool found;
-    real distance; // along the unit direction
+    real distance; // mm along the ray, whose direction is a unit vector
     real cosine;   // between the ray and the band's normal
 };
 
-// In the specimen's sense, the ring's aim at the origin: z up. direction: unit.
+// The meeting in the specimen's orientation, z up, with the ring's aim at the origin. direction: unit.
 VKFV_FUNCTION RingMeeting meet_ring(RingLight ring, real3 position, real3 direction) {
-    // On the cone: rho = r - (z - z_0) tan(elevation). A t^2 + 2 B t + C = 0.
+    // The cone is rho = r - (z - z_0) tan(elevation), so the meeting solves A t^2 + 2 B t + C = 0.
     real tangent = ring.elevation_sine / ring.elevation_cosine;
     real lift = position.z - ring.distance * ring.elevation_sine;
     real start = ring.distance * ring.elevation_cosine - lift * tangent; // the cone's radius at the ray's height

@@ -1,4 +1,4 @@
-// Wavelengths: drawn from the source's spectrum, and what follows from them.
+// Wavelengths: the draw from the source's spectrum, and the spectral quantities that follow from it.
 
 #ifdef __cplusplus
 template <class Scene>
@@ -11,7 +11,7 @@ uint features(const Scene& scene) {
 }
 #else
 SpectralBin spectral_bin(int index); // bindings.glsl
-uint features();                     // FEATURE_*: likewise
+uint features();                     // FEATURE_* of the scene: bindings.glsl
 #endif
 
 VKFV_FUNCTION Light light_of_wave_number(Instrument instrument, real wave_number) {
@@ -37,7 +37,7 @@ VKFV_FUNCTION real wavelength_in_bin(SpectralBin bin, real u) {
     return bin.start + place * (bin.stop - bin.start);
 }
 
-// By the inverse of the cumulative spectrum; u uniform in (0, 1).
+// Draws light from the spectrum by the inverse of its cumulative distribution; u uniform in (0, 1).
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Light draw_light(VKFV_SCENE_PARAMETER Instrument instrument, real u) {
     int first = 0;
     int last = instrument.spectral_bins - 1;
@@ -58,7 +58,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Light draw_light(VKFV_SCENE_PARAMETER Instrume
     return light_of_wave_number(instrument, real(1.0) / wavelength_in_bin(bin, share));
 }
 
-// What the index at x differs from that at x = 0.
+// The difference between the index at spectral coordinate x and that at x = 0.
 VKFV_FUNCTION real disperse(Dispersion dispersion, real x) {
     return x *
            (dispersion.c1 +

@@ -93,8 +93,8 @@ VKFV_FUNCTION CubicWeights cubic_weights(real u) {
     return w;
 }
 
-// The shape, and the lattice interpolated on it where there is one (columns > 0; at least 2 x 2 points). Beyond the
-// footprint the lattice goes on level.
+// Height of an analytic specimen: the shape, and the lattice interpolated on it where there is one (columns > 0; at
+// least 2 x 2 points). Beyond the footprint the lattice goes on level.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION SurfaceHeight surface_height(VKFV_SCENE_PARAMETER SpecimenRecord specimen, real x,
                                                                real y) {
     SurfaceHeight result = shape_height(specimen, x, y);
@@ -141,30 +141,29 @@ VKFV_FUNCTION RayInterval clip_interval(RayInterval interval, real origin, real 
     return result;
 }
 
-// A march takes at most MARCH_STEPS steps that the slope's bound proves safe; then at most MARCH_COARSE_STEPS that
-// cover the rest. A chord of a coarse step's length c below the surface may be passed over, which is a graze not
-// deeper than c^2 / 8 over the radius of curvature (for a ray at NA 0.28 through 10 um of relief and a radius of 1 um:
-// 0.01 nm).
+// Limits of a march: at most MARCH_STEPS steps that the slope's bound proves safe, then at most MARCH_COARSE_STEPS that
+// cover the rest. A chord of a coarse step's length c below the surface may be missed, which is a graze not deeper than
+// c^2 / 8 over the radius of curvature (for a ray at NA 0.28 through 10 um of relief and a radius of 1 um: 0.01 nm).
 const int MARCH_STEPS = 256;
 const int MARCH_COARSE_STEPS = 1024;
-// Halvings from a coarse step to the last bit of a double: 52 - 10, and as many Newton steps that may fail.
+// Halvings from a coarse step to the last bit of a double: 52 - 10, and as many Newton steps, which may fail.
 const int MARCH_POLISH_STEPS = 84;
 
-// The nearest crossing of the continuous surface with t_min <= t <= t_max, within the footprint. direction: unit.
-// Safe steps: along the ray the gap z - f(x, y) shrinks by at most lipschitz |d_xy| - d_z a unit length (J. C. Hart,
-// "Sphere tracing", The Visual Computer 12 (1996), for the vertical distance instead of the Euclidean one).
-// A ray that starts below the surface by more than rounding is met at once, at t_min: scattered light cannot leak. One
-// that comes in through a side of the footprint below the surface meets it from below. position.z is the surface's
-// height, so that what starts there starts on the surface; the normal is on the side of +z.
+// The nearest crossing of the continuous surface with t_min <= t <= t_max, within the footprint. direction: unit. Safe
+// steps: along the ray the gap z - f(x, y) shrinks by at most lipschitz |d_xy| - d_z a unit length (J. C. Hart, "Sphere
+// tracing", The Visual Computer 12 (1996), for the vertical distance instead of the Euclidean one). A ray that starts
+// below the surface by more than rounding is met at once, at t_min: scattered light cannot leak. One that comes in
+// through a side of the footprint below the surface meets it from below. position.z is the surface's height, so that a
+// ray that starts there starts on the surface; the normal is on the side of +z.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER SpecimenRecord specimen, real3 origin,
                                                     real3 direction, real t_min, real t_max) {
     real lateral = sqrt(direction.x * direction.x + direction.y * direction.y);
-    // What the gap may be wrong by: an ulp or two of each coordinate that enters it, the lateral ones times slope.
+    // Bound of the gap's rounding: an ulp or two of each coordinate that enters it, the lateral ones times slope.
     real rounding = real(4.0) * SURFACE_EPSILON *
                     (abs(origin.z) + max(abs(specimen.bottom), abs(specimen.top)) +
                      specimen.lipschitz * (abs(origin.x) + abs(origin.y) + abs(specimen.x_min) + abs(specimen.x_max) +
                                            abs(specimen.y_min) + abs(specimen.y_max)));
-    // What the rate of approach of a tangential ray may be wrong by.
+    // Bound of the rounding of the rate at which a tangential ray approaches.
     real undecided = real(8.0) * SURFACE_EPSILON * (real(1.0) + specimen.lipschitz);
     RayInterval inside;
     inside.start = t_min;
@@ -173,7 +172,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER Specime
     inside = clip_interval(inside, origin.y, direction.y, specimen.y_min, specimen.y_max);
     inside = clip_interval(inside, origin.z, direction.z, specimen.bottom - rounding, specimen.top + rounding);
 
-    // From the place of entry on, so that the steps keep their digits.
+    // The march starts at the place of entry, so that the steps keep their digits.
     real3 start = origin + inside.start * direction;
     real way = inside.stop - inside.start;
     Hit result;
@@ -188,11 +187,11 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER Specime
     SurfaceHeight surface = surface_height(VKFV_SCENE specimen, start.x, start.y);
     real gap = start.z - surface.height;
     bool entered = inside.start > t_min;
-    real side = entered && gap < real(0.0) ? real(-1.0) : real(1.0); // of the surface that the ray is on
+    real side = entered && gap < real(0.0) ? real(-1.0) : real(1.0); // side of the surface that the ray is on
     real closing = specimen.lipschitz * lateral - side * direction.z;
     gap = side * gap;
     real s = real(0.0);        // distance from start
-    real previous = real(0.0); // on the ray's side of the surface
+    real previous = real(0.0); // place on the ray's side of the surface
     bool met = false;
     for (int step = 0; step < MARCH_STEPS + MARCH_COARSE_STEPS; ++step) {
         real rate = side * (direction.z - surface.slope_x * direction.x - surface.slope_y * direction.y);
@@ -215,7 +214,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER Specime
         return result;
     }
 
-    // Newton's method, held between the last point before the surface and the first behind it by bisection.
+    // Newton's method, held by bisection between the last point before the surface and the first behind it.
     real lower = previous;
     real upper = s;
     for (int step = 0; step < MARCH_POLISH_STEPS && abs(gap) > rounding && upper > lower; ++step) {

@@ -1,10 +1,10 @@
-// A train of surfaces, traced in sequence: each in the frame of its own vertex.
+// A train of surfaces, traced in sequence, each in the frame of its own vertex.
 
 struct TrainResult {
     Ray ray;          // in the frame of the last surface met, after it
-    real index;       // of the medium it is in
+    real index;       // index of the medium that the ray is in
     real transmitted; // product of the surfaces' transmittances
-    uint status;      // PATH_ALIVE or why it ended
+    uint status;      // PATH_ALIVE, or why the path ended
     int surface;      // the surface where it ended, else -1
 };
 
@@ -23,7 +23,7 @@ VKFV_FUNCTION real3 to_surface_frame(Surface surface, real3 v) {
                  surface.rotation_zx * v.x + surface.rotation_zy * v.y + surface.rotation_zz * v.z);
 }
 
-// The share that a surface lets pass on, of light that its shape does not stop.
+// The share of light that a surface lets pass, for light that its shape does not stop.
 VKFV_FUNCTION real surface_transmittance(Surface surface, real cosine, real index_before, real index_after,
                                          real wave_number) {
     return (surface.flags & SURFACE_MIRROR) != 0u
@@ -32,9 +32,9 @@ VKFV_FUNCTION real surface_transmittance(Surface surface, real cosine, real inde
                      interface_reflectance(surface, index_before, index_after, min(cosine, real(1.0)), wave_number);
 }
 
-// One surface: transfer, intersection, edge, refraction. `before` is in the frame of the previous vertex. A plane
-// mirror leaves the light's way as it was: all that follows it stands in the space that the mirror shows. Light that
-// has ended keeps its status, and its ray goes on without meaning: to hold it would cost every ray.
+// Light through one surface: transfer, intersection, edge, refraction. `before` is in the frame of the previous vertex.
+// A plane mirror leaves the light's way unchanged: all that follows stands in the space that the mirror shows. Light
+// that has ended keeps its status, and its ray continues without meaning: to hold it would cost every ray.
 VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult before, bool apertures, Light light,
                                         uint present) {
     real3 start = real3(before.ray.position.x, before.ray.position.y, before.ray.position.z - surface.distance);
@@ -90,7 +90,7 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
     return result;
 }
 
-// As it was, but for what a pattern at the surface takes of the light that has come through.
+// The result behind a surface, with the share of light taken off that a pattern there does not let through.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult pass_light_field(VKFV_SCENE_PARAMETER Surface surface, int index,
                                                                TrainResult behind, Light light) {
     TrainResult result = behind;
@@ -105,9 +105,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult pass_light_field(VKFV_SCENE_PARAME
     return result;
 }
 
-// ray enters in the frame of the first vertex (its z there, usually negative), its direction scaled by `index`, that of
-// the medium in front of the train. The train is gone through to its end for every ray: neighbouring rays seldom all
-// end, and a loop that all leave together reads each surface once for all of them.
+// The state of a ray that enters a train, in the frame of the first vertex (its z there, usually negative), its
+// direction scaled by `index`, that of the medium in front of the train. Every ray goes through the train to its end:
+// neighbouring rays seldom all end, and a loop that all leave together reads each surface once for all of them.
 VKFV_FUNCTION TrainResult enter_train(Ray ray, real index) {
     TrainResult result;
     result.ray = ray;
@@ -118,7 +118,8 @@ VKFV_FUNCTION TrainResult enter_train(Ray ray, real index) {
     return result;
 }
 
-// By a loop, also where the kernel has the instrument as constants: for what few rays need, as its code is short.
+// Traces a train by a loop, even where the kernel has the instrument as constants: few rays need it, and its code is
+// short.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train_by_loop(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
                                                                   real index, bool apertures, Light light) {
     TrainResult result = enter_train(ray, index);
@@ -134,8 +135,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER i
                                                           real index, bool apertures, Light light) {
 #ifdef VKFV_SPECIALISED
     TrainResult result = enter_train(ray, index);
-    // Written out, as constants fold only where each surface has a place of its own (device/prescription.glsl). The
-    // outer question is of constants alone: what fails it costs a driver little time to compile.
+    // The surfaces are written out, as constants fold only where each surface has a place of its own
+    // (device/prescription.glsl). The outer test is of constants alone: surfaces that fail it cost a driver little time
+    // to compile.
 #define VKFV_PASS_SURFACE(k) \
     if (k < known_count) { \
         if (first <= known_first + k && known_first + k < first + count) { \
@@ -152,7 +154,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER i
 #endif
 }
 
-// Free flight to the plane z = plane (same frame), in a medium of the given index; z becomes 0 there.
+// Free flight to the plane z = plane (same frame) in a medium of the given index; z becomes 0 there. plane: mm.
 VKFV_FUNCTION Ray fly_to_plane(Ray ray, real plane, real index) {
     real parameter = (plane - ray.position.z) / ray.direction.z;
     Ray result;

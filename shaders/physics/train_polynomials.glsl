@@ -1,22 +1,22 @@
 // A centred train in light of one wavelength as polynomials of the ray that enters it, instead of surface by surface.
-// What a train of revolution makes of a ray with the place r and the direction's part s across the axis, counted from
-// some multiple of r, are sums of those two vectors, with factors that depend on u = r.r, v = r.s and w = s.s alone; so
+// Let a ray have the place r and the direction's part s across the axis, counted from some multiple of r. A train of
+// revolution maps it to sums of those two vectors, with factors that depend on u = r.r, v = r.s and w = s.s alone; so
 // do the squares of its distances from the axis at the surfaces. The factors are polynomials (M. B. Hullin, J. Hanika,
-// W. Heidrich, "Polynomial optics", Computer Graphics Forum 31 (2012) 1375). Near an edge they do not tell: such light
-// is traced. src/optics/instrument/train_polynomials.hpp finds them and says how far they are off.
+// W. Heidrich, "Polynomial optics", Computer Graphics Forum 31 (2012) 1375). Near an edge they cannot decide: such
+// light is traced. src/optics/instrument/train_polynomials.hpp finds them and their errors.
 
-const int POLYNOMIAL_DEGREE = 5; // at most
+const int POLYNOMIAL_DEGREE = 5; // highest degree
 const int POLYNOMIAL_TERMS = 56;
 const int POLYNOMIAL_EDGES = 6;
 
 // The sum of terms u^i v^j w^k, i + j + k <= degree, which stand in the order of i, then j, then k, as if the degree
-// were the highest; those beyond it are 0.
+// were the highest; terms beyond it are 0.
 struct Polynomial {
     int degree;
     real terms[POLYNOMIAL_TERMS];
 };
 
-// Horner's scheme in w, in v, in u. Written out, as constants fold only where each term has a place of its own.
+// Horner's scheme in w, in v, in u. It is written out, as constants fold only where each term has a place of its own.
 // clang-format off
 #define VKFV_STEP(order, x, more, term) ((order) < p.degree ? (more) * x + (term) : (term))
 #define VKFV_ROW_0(order, n) p.terms[n]
@@ -54,24 +54,25 @@ VKFV_FUNCTION real value_of(Polynomial p, real u, real v, real w) {
 #undef VKFV_SHEET_4
 #undef VKFV_SHEET_5
 
-// An edge that stops light, in the order in which light comes to them. Of light that is inside of all edges before, the
-// square of the distance from the axis at this one, mm^2, tells what is surely inside and what surely ends here.
+// An edge that stops light; edges stand in the order in which light comes to them. For light inside all edges before,
+// the squared distance from the axis at this one, mm^2, decides between surely inside, surely stopped here, and
+// unknown.
 struct EdgePolynomial {
     Polynomial distance_squared;
-    int surface;       // in the train, from 0
-    real inside_below; // inside where the square is less
-    real ends_from;    // ends here from there ...
-    real ends_below;   // ... to here
+    int surface;       // index in the train, from 0
+    real inside_below; // mm^2, inside if the square is less
+    real ends_from;    // mm^2, stopped here if the square is from this on
+    real ends_below;   // mm^2, and less than this
 };
 
-// Of a ray in the source's frame with a unit direction, to the plane z = `plane` behind the train's last vertex.
+// The map of a ray in the source's frame with a unit direction to the plane z = `plane` behind the train's last vertex.
 struct TrainPolynomials {
-    int edges;       // that are asked; -1: these are no polynomials of a train
-    real per_radius; // 1/mm, of r: the source's own is 1
-    real shift;      // 1/mm: s is the direction less this times the place
-    real per_sine;   // of s: the farthest off that is emitted is 1
+    int edges;       // number of edges tested; -1: there are no polynomials
+    real per_radius; // 1/mm, scale of r: 1 at the source's own radius
+    real shift;      // 1/mm: s is the direction less `shift` times the place
+    real per_sine;   // scale of s: 1 for the farthest direction that is emitted
     real plane;      // mm
-    // The factors of r and of s in the place, mm, and in the direction of the length of the index.
+    // The factors of r and of s in the place, mm, and in the direction, which has the length of the index.
     Polynomial place_r;
     Polynomial place_s;
     Polynomial direction_r;
@@ -80,9 +81,9 @@ struct TrainPolynomials {
 };
 
 struct PolynomialPassage {
-    bool known;  // else the ray has to be traced
+    bool known;  // false: the ray has to be traced
     uint status; // PATH_ALIVE or PATH_VIGNETTED
-    int surface; // in the train, where it ended, else -1
+    int surface; // index in the train of the surface where it ended, else -1
     Ray ray;     // on the plane
 };
 
@@ -101,7 +102,7 @@ VKFV_FUNCTION PolynomialPassage meet_edge(PolynomialPassage before, bool there, 
     return result;
 }
 
-// By the edges alone; the ray is left open.
+// The status by the edges alone; the ray is not computed.
 VKFV_FUNCTION PolynomialPassage meet_edges(TrainPolynomials train, real u, real v, real w) {
     PolynomialPassage passage;
     passage.known = true;
@@ -116,7 +117,7 @@ VKFV_FUNCTION PolynomialPassage meet_edges(TrainPolynomials train, real u, real 
     return passage;
 }
 
-// index: of the medium behind the train.
+// Passes a ray through the train by its polynomials. index: of the medium behind the train.
 VKFV_FUNCTION PolynomialPassage pass_by_polynomials(TrainPolynomials train, Ray ray, real index) {
     real2 from = real2(ray.position.x, ray.position.y);
     real2 r = from * train.per_radius;

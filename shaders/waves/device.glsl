@@ -1,5 +1,5 @@
-// What the kernels of the image that waves make begin with: an invocation a place, workgroups in rows where one row
-// holds too few.
+// The kernels of the wave image include this file first. An invocation takes a place; workgroups stand in rows where
+// one row holds too few.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -20,8 +20,8 @@ vec2 turned(float half_turns) {
     return vec2(cos(angle), sin(angle));
 }
 
-// Four cells that are mirror images: the k-th cell of the lower left quarter, what it is left to right, upside down,
-// and both.
+// Four cells that are mirror images of each other: the k-th cell of the lower left quarter, and its images left to
+// right, upside down, and both.
 uvec4 cells_of_group(uint group, uint side) {
     uint row = group / (side / 2u);
     uint column = group % (side / 2u);

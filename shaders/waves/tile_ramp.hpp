@@ -1,4 +1,4 @@
-// The C++ side of tile_ramp.glsl: in double for the host, in float for what a device is given.
+// The C++ side of tile_ramp.glsl: in double for the host, in float for device buffers.
 #pragma once
 
 #include <cstdint>

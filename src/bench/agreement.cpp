@@ -9,13 +9,13 @@ namespace vkfv::bench {
 
 namespace {
 
-// Upper tail of chi-square: E. B. Wilson, M. M. Hilferty, "The distribution of chi-square", PNAS 17 (1931) 684.
+// The upper tail of chi-square: E. B. Wilson, M. M. Hilferty, "The distribution of chi-square", PNAS 17 (1931) 684.
 double chi_square_tail(double chi_square, double degrees) {
     const double variance = 2.0 / (9.0 * degrees);
     return 0.5 * std::erfc((std::cbrt(chi_square / degrees) - 1.0 + variance) / std::sqrt(2.0 * variance));
 }
 
-// Variance for each unit of what is measured, over the whole image.
+// The variance for each unit of the value, over the whole image.
 double variance_rate(const Measured& image) {
     const auto total = [](const Grid<double>& grid) {
         return std::accumulate(grid.values.begin(), grid.values.end(), 0.0);
@@ -51,7 +51,7 @@ Agreement compare(const Measured& a, const Measured& b) {
                 }
             }
             const double difference = of_a - of_b;
-            // Each weighs with the other's rate: the best mean of both.
+            // Each image is weighted with the other's rate, which gives the best mean of both.
             const double variance = of_a * rate_b + of_b * rate_a;
             total += difference;
             total_variance += variance;
@@ -63,7 +63,7 @@ Agreement compare(const Measured& a, const Measured& b) {
     }
     if (result.degrees > 0) {
         result.total_z = total / std::sqrt(total_variance);
-        // Two tests: the smaller p-value, by Sidak's correction.
+        // The smaller p-value of the two tests is taken, with Sidak's correction.
         const double smaller = std::min(std::erfc(std::abs(result.total_z) / std::sqrt(2.0)),
                                         chi_square_tail(result.chi_square, result.degrees));
         result.p = 1.0 - (1.0 - smaller) * (1.0 - smaller);

@@ -1,4 +1,4 @@
-// What --bench measures, part by part, as one JSON document:
+// The measurements of --bench, part by part, as one JSON document:
 //   program, commit, date (UTC), device, driver, device_type, configuration, traversal
 //   aimed_share       of the source's flux that launched rays stand for; runs, rays_per_run
 //   validation[]      what, rays, total_z, chi_square, degrees, p, agrees
@@ -14,7 +14,7 @@
 //   estimators[]      name, a timing, seeds, variance (W^2, summed over the pixels), relative_efficiency (forward: 1)
 //   scaling           rays[], triangles[], surfaces[], pixels[]: the quantity and a timing
 //   peer              rays, seconds, rays_per_second, processor_seconds, ratio (our rate over its), processor_ratio
-// All seconds are medians over the runs; `seconds` are the device's own. What was not measured is absent.
+// All seconds are medians over the runs; `seconds` are the device's own. Parts that were not measured are absent.
 #pragma once
 
 #include "core/toml/toml_document.hpp"
@@ -36,25 +36,25 @@ extern const std::vector<std::string> bench_parts;
 struct BenchOptions {
     std::filesystem::path file; // configuration
     std::vector<TomlOverride> overrides;
-    int runs = 5;                   // whose median counts
-    std::vector<std::string> parts; // of bench_parts
+    int runs = 5;                   // number of runs, whose median counts
+    std::vector<std::string> parts; // names from bench_parts
     bool quick = false;             // shorter runs and fewer sizes
     std::filesystem::path peer;     // the program vkfv_bench_peer; empty: none
-    std::string commit;             // what the report says was measured
+    std::string commit;             // commit that the report names
 };
 
-// Throws RunError if the validation fails: then nothing is timed. after_part: gets the report as far as it is, so that
-// nothing is lost if a later part fails.
+// Measures the parts. Throws RunError if the validation fails: then nothing is timed. after_part: gets the report so
+// far, so that nothing is lost if a later part fails.
 Json measure_bench(const BenchOptions& options, const std::function<void(const Json&)>& after_part);
 
-// The peer's own report (--json of vkfv_bench_peer) on a configuration with overrides. Throws RunError.
+// The report of the peer itself (--json of vkfv_bench_peer) on a configuration with overrides. Throws RunError.
 Json run_peer(const std::filesystem::path& program, const std::filesystem::path& configuration,
               const std::vector<TomlOverride>& overrides, const std::vector<std::string>& arguments);
 
-// All that was measured as lines for a person.
+// The report as lines of text.
 std::string bench_text(const Json& report);
 
-// The same as one SVG.
+// The report as one SVG.
 std::string bench_picture(const Json& report);
 
 } // namespace vkfv::bench

@@ -16,11 +16,11 @@ const std::vector<std::string> bench_parts = {"validation", "stages",   "whole",
 
 namespace {
 
-// A part that is measured for itself.
+// A part of the bench that is measured by itself.
 struct Part {
     const char* name;
     const char* key; // in the report
-    bool scaling;    // in its object "scaling"
+    bool scaling;    // true: in its object "scaling"
     Json (*measure)(const BenchScene& scene);
 };
 

@@ -19,7 +19,7 @@ namespace vkfv::bench {
 
 namespace {
 
-// Standard output of a program that ended well; its standard error goes where ours does.
+// The standard output of a program that ended well; its standard error is inherited.
 std::string output_of(std::vector<std::string> words) {
     std::vector<char*> arguments;
     for (auto& word : words) {

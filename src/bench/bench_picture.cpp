@@ -58,7 +58,7 @@ class Picture {
         }
     }
 
-    // Rays/s over a quantity, both in decades.
+    // Draws rays/s over a quantity, both logarithmic.
     void curves(const std::string& title, const std::string& quantity, const std::vector<report::Curve>& curves) {
         if (!curves.empty()) {
             const dvec2 corner = next("");
@@ -70,7 +70,7 @@ class Picture {
     std::string document(const std::string& title) const { return svg_.document(page, title); }
 
   private:
-    // The upper left corner of the next panel, with its title drawn.
+    // Draws the title of the next panel; returns the panel's upper left corner.
     dvec2 next(const std::string& title) {
         const dvec2 corner = margin + (panel + gap) * dvec2(place_ % 3, place_ / 3);
         ++place_;
@@ -82,7 +82,7 @@ class Picture {
     int place_ = 0;
 };
 
-// A curve for each value of `by` (one nameless curve if there is none).
+// Curves of a list's entries, one for each value of `by` (one nameless curve if `by` is null).
 std::vector<report::Curve> curves_of(const Json& list, const char* quantity, const char* by) {
     std::vector<report::Curve> result;
     for (const auto& entry : list) {

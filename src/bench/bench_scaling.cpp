@@ -13,7 +13,7 @@ namespace vkfv::bench {
 
 namespace {
 
-// Runs of a point, where sizes count more than medians.
+// Number of runs of a point of a curve, whose sizes matter more than medians.
 int few_runs(const BenchScene& scene) {
     return std::min(scene.options().runs, 3);
 }
@@ -47,7 +47,7 @@ Json over_triangles(const BenchScene& scene) {
         const auto specimen = specimen::make(description);
         for (const auto& way : scene.traversals()) {
             if (way.name == "bvh" && scene.software() && number > 1e6) {
-                continue; // on two cores it takes longer to build than all else together
+                continue; // on two cores its build takes longer than everything else together
             }
             spdlog::info("{:.0f} triangles by {}", 2 * cells * cells, way.name);
             auto options = way.options;
@@ -79,7 +79,7 @@ Json over_surfaces(const BenchScene& scene) {
             const auto first_order = measurement::assemble_instrument(configuration).first_order;
             auto fitted = configuration;
             fitted.instrument.source.radius = first_order.pupil_radius_in_source;
-            // A wider field of view than the configuration's would be lit beyond its specimen.
+            // A field of view wider than the configuration's would be lit beyond its specimen.
             if (fitted.instrument.field_stop_radius) {
                 *fitted.instrument.field_stop_radius *=
                     std::min(1.0, std::abs(first_order.magnification) / magnification);

@@ -13,8 +13,8 @@ namespace vkfv::bench {
 
 namespace {
 
-constexpr double warm_up_seconds = 0.5;    // an idle GPU's clocks rise as slowly
-constexpr double still_warm_seconds = 0.1; // where the device was busy within the last second
+constexpr double warm_up_seconds = 0.5;    // time in which an idle GPU's clocks rise
+constexpr double still_warm_seconds = 0.1; // if the device was busy within the last second
 
 // The largest 1, 2 or 5 times a power of ten up to a number.
 std::uint64_t round_below(double number) {
@@ -146,7 +146,7 @@ std::vector<Way> BenchScene::estimators() const {
 }
 
 optics::Instrument instrument_of(const Configuration& configuration, const specimen::Specimen& specimen) {
-    auto for_all_ways = configuration; // both estimators, any number of bounces
+    auto for_all_ways = configuration; // for both estimators and any number of bounces
     for_all_ways.instrument.turned = true;
     for_all_ways.instrument.single_scatter = true;
     return measurement::assemble_instrument(for_all_ways, specimen, std::span(&in_focus, 1));

@@ -1,4 +1,4 @@
-// What the parts of --bench are measured on: the configured scene and device, and how runs are timed.
+// The scene and device on which the parts of --bench are measured, and the timing of runs.
 #pragma once
 
 #include "bench/bench.hpp"
@@ -16,17 +16,17 @@
 
 namespace vkfv::bench {
 
-inline constexpr double in_focus = 0; // where all is exposed, mm
+inline constexpr double in_focus = 0; // focal height of all exposures, mm
 
 double median(std::vector<double> values);
-// (max - min) / median
+// The spread (max - min) / median.
 double spread(const std::vector<double>& values);
 
-// A way of tracing that is compared with others.
+// A traversal or estimator that is compared with others.
 struct Way {
     std::string name;
     trace::TraceOptions options;
-    std::uint64_t rays = 0; // of an image; 0: those of a run
+    std::uint64_t rays = 0; // rays of an image; 0: the number of a run
 };
 
 class BenchScene {
@@ -47,22 +47,22 @@ class BenchScene {
 
     std::unique_ptr<trace::Tracer> tracer_of(trace::TraceOptions options, std::uint64_t rays) const;
 
-    // Exposes until an idle GPU's clocks have risen.
+    // Exposes until the clocks of an idle GPU have risen.
     void warm_up(const trace::Tracer& tracer) const;
-    // A timing (bench.hpp), in so many runs or in those of the options.
+    // A timing (bench.hpp), in so many runs or in the number of the options.
     Json timing(const trace::Tracer& tracer, int runs) const;
     Json timing(const trace::Tracer& tracer) const { return timing(tracer, options_.runs); }
 
-    // Those that the specimen and the device admit.
+    // The traversals that the specimen and the device admit.
     std::vector<Way> traversals() const;
-    // The first is what the others' efficiency is relative to.
+    // The estimators; the first is the reference for the others' efficiency.
     std::vector<Way> estimators() const;
 
   private:
     const BenchOptions& options_;
     Configuration configuration_;
-    // Each tracer opens the device anew. With one open all along the driver stays loaded: NVIDIA's, loaded
-    // anew some fifty times, was seen to fail.
+    // Each tracer opens the device anew. This one stays open, so that the driver stays loaded: NVIDIA's, loaded anew
+    // some fifty times, was seen to fail.
     vulkan::Device kept_;
     vulkan::DeviceReport device_;
     specimen::Specimen specimen_;
@@ -71,7 +71,7 @@ class BenchScene {
     mutable std::chrono::steady_clock::time_point last_busy_{};
 };
 
-// An instrument that can trace backward too, unless its light is a ring.
+// An instrument that can also trace backward, unless its light is a ring.
 optics::Instrument instrument_of(const Configuration& configuration, const specimen::Specimen& specimen);
 
 } // namespace vkfv::bench

@@ -7,7 +7,7 @@ namespace vkfv::bench {
 
 namespace {
 
-using report::with_prefix; // of rates
+using report::with_prefix; // for rates
 
 double number(const Json& of, const char* key) {
     return of.at(key).get<double>();
@@ -41,7 +41,7 @@ std::string stages_text(const Json& stages) {
     return result + "\n";
 }
 
-// A heading and a line or two for each entry of a list, if it is there.
+// A heading, and a line or two for each entry of a list, if the list is there.
 template <class Line>
 std::string list_text(const Json& of, const char* list, const Line& line) {
     std::string result;

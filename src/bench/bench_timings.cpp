@@ -12,7 +12,7 @@ namespace vkfv::bench {
 
 namespace {
 
-constexpr int seeds = 8; // of a variance
+constexpr int seeds = 8; // images from which a variance is found
 
 specimen::Mesh mesh_of(const specimen::HeightField& field) {
     specimen::Mesh mesh;

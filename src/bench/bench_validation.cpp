@@ -14,7 +14,7 @@ namespace vkfv::bench {
 
 namespace {
 
-constexpr double false_alarms = 1e-4; // of a whole validation
+constexpr double false_alarms = 1e-4; // over a whole validation
 
 Measured measured(const trace::Image& image) {
     Measured result{image.flux, image.standard_error};
@@ -24,7 +24,7 @@ Measured measured(const trace::Image& image) {
     return result;
 }
 
-// Without its gate, so that ours is tested too.
+// The peer's image, traced without its gate, so that vkfv's gate is tested too.
 Measured image_of_peer(const BenchScene& scene, std::uint64_t rays) {
     const auto file = std::filesystem::temp_directory_path() / fmt::format("vkfv_bench_peer_{}.tif", getpid());
     const auto told = run_peer(scene.options().peer, scene.options().file, scene.options().overrides,
@@ -51,7 +51,7 @@ Json validation(const BenchScene& scene) {
     const auto expose = [&](const Way& way) {
         return measured(scene.tracer_of(way.options, way.rays > 0 ? way.rays : rays)->expose(in_focus, image++));
     };
-    // First, since it fails at once if it fails.
+    // The peer comes first, since it fails at once if it fails.
     Measured peer;
     if (!scene.options().peer.empty()) {
         peer = image_of_peer(scene, rays);

@@ -62,7 +62,7 @@ HitTimes time_hits(const specimen::Specimen& specimen, const trace::TraceOptions
     batch.count = options.batch > 0 ? static_cast<std::uint32_t>(options.batch) : software ? 1u << 20 : 1u << 28;
     batch.seed = options.seed;
     batch.aperture = static_cast<float>(numerical_aperture);
-    // Strata of 32 rays, as many as the rays fill once.
+    // Strata of 32 rays: as many as the rays fill once.
     batch.strata_bits = order == HitOrder::morton ? (std::bit_width(std::max(batch.count / 32, 1u)) - 1) / 2 : 0;
     if (order == HitOrder::leaving) {
         const vulkan::Kernel recording = kernel_for(kernels::HITS_RECORD);
@@ -74,7 +74,7 @@ HitTimes time_hits(const specimen::Specimen& specimen, const trace::TraceOptions
     }
 
     const std::uint32_t per_group = group_size * rays_per_invocation;
-    // Vulkan promises 65535 workgroups a dispatch.
+    // Vulkan guarantees 65535 workgroups a dispatch.
     const std::uint32_t groups = std::min((batch.count + per_group - 1) / per_group, 65535u);
     const auto run = [&] {
         vulkan::Commands commands(device, 2);

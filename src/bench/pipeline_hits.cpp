@@ -26,10 +26,10 @@ using kernels::ProbeRay;
 using physics::f32::Hit;
 using trace::Traversal;
 
-constexpr double nm = 1e-6; // in mm
+constexpr double nm = 1e-6; // one nanometre in mm
 constexpr double numerical_aperture = 0.4;
 
-// A specimen on a device, and how rays meet it there.
+// A specimen on a device, and the hits of rays with it there.
 class MeetingPlace {
   public:
     MeetingPlace(const vulkan::Device& device, const specimen::Specimen& specimen, Traversal traversal)
@@ -39,7 +39,7 @@ class MeetingPlace {
         parameters_.write_values(std::span<const kernels::Parameters>(&parameters, 1));
     }
 
-    // meet(commands, bindings, declarations, constants, rays) records how.
+    // The hits of rays. meet(commands, bindings, declarations, constants, rays) records the commands that find them.
     template <class Meet>
     std::vector<Hit> hits(const std::vector<ProbeRay>& rays, const Meet& meet) const {
         vulkan::Buffer given(device_, rays.size() * sizeof(ProbeRay));
@@ -117,7 +117,7 @@ std::vector<ProbeRay> leaving_rays(std::span<const Hit> hits, std::mt19937_64& r
     for (const Hit& hit : hits) {
         if (hit.found == 1) {
             const glm::vec3 aside(normal(random), normal(random), normal(random));
-            // Just short of the sphere about the normal, so that none has no direction.
+            // The sphere is scaled to 0.999, so that no sum of normal and point is zero.
             rays.push_back(
                 {physics::f32::scatter_origin(hit), glm::normalize(hit.normal + 0.999F * glm::normalize(aside))});
         }
@@ -125,7 +125,7 @@ std::vector<ProbeRay> leaving_rays(std::span<const Hit> hits, std::mt19937_64& r
     return rays;
 }
 
-// Two points of one grazing ray lie farther apart in height than across the surface.
+// True if both hits lie within 1 nm across the surface: two points of one grazing ray lie farther apart in height.
 bool lie_in_one_surface(const Hit& a, const Hit& b) {
     return a.found == 1 && b.found == 1 &&
            std::abs(glm::dot(glm::dvec3(a.position) - glm::dvec3(b.position), glm::dvec3(a.normal))) <= nm;

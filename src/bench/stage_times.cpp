@@ -13,7 +13,7 @@ namespace vkfv::bench {
 
 namespace {
 
-constexpr std::chrono::milliseconds warm_up{500}; // clocks of an idle GPU take that long to rise
+constexpr std::chrono::milliseconds warm_up{500}; // time in which the clocks of an idle GPU rise
 
 } // namespace
 
@@ -21,7 +21,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
                        const trace::TraceOptions& options, double focal_height, int runs) {
     trace::DeviceScene scene = trace::make_device_scene(instrument, specimen, options);
     const std::uint32_t batch = trace::suitable_batch(scene, options);
-    scene.order_emission(batch); // which then is an image
+    scene.order_emission(batch); // the batch is then one image
     trace::ExposureMemory exposure = scene.exposure_memory();
     scene.write_exposure(exposure, focal_height, 0);
     const trace::ForwardTrace whole(scene, batch);
@@ -30,7 +30,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     const trace::ForwardTrace occlusion(scene, batch, kernels::STOP_NOWHERE, kernels::STOP_AFTER_SPECIMEN);
     const trace::ForwardTrace uncounted(scene, batch, kernels::STOP_NOWHERE, kernels::STOP_AFTER_TRAIN);
 
-    // Both halves of one form of the trace, s.
+    // Times of both halves of one form of the trace, s.
     const auto time = [&](const trace::ForwardTrace& trace) {
         vulkan::Commands commands(*scene.device, 3);
         scene.give_emission_order(commands, exposure);

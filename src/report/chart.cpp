@@ -18,9 +18,9 @@ using glm::dvec2;
 constexpr const char* title_style = "font-size=\"14\" fill=\"#111111\"";
 constexpr const char* grid_style = "stroke=\"#dddddd\"";
 constexpr const char* frame_style = "fill=\"none\" stroke=\"#666666\"";
-constexpr double least_separation = 26; // of tick labels, pixels
+constexpr double least_separation = 26; // between tick labels, pixels
 
-// All there is to say of grey pixels.
+// The red channel, which grey pixels have in common with the others.
 Grid<std::uint8_t> reds(const Grid<Rgb>& pixels) {
     Grid<std::uint8_t> values(pixels.columns, pixels.rows);
     std::ranges::transform(pixels.values, values.values.begin(), &Rgb::red);
@@ -31,7 +31,7 @@ std::string label_style(const char* anchor) {
     return fmt::format("font-size=\"11\" text-anchor=\"{}\" fill=\"#444444\"", anchor);
 }
 
-// The data's rectangle within a panel: its lower left and upper right corner (y of the page goes down).
+// The rectangle of the data within a panel: its lower left and upper right corner (y of the page goes down).
 struct Frame {
     dvec2 low, high;
     Axis x, y;
@@ -92,7 +92,7 @@ void draw_axes(Svg& svg, const Frame& frame, bool grid) {
     }
 }
 
-// The largest of 1, 2 and 5 times a power of ten that is no larger.
+// The largest of 1, 2 and 5 times a power of ten that does not exceed the value.
 double round_below(double value) {
     const double power = std::pow(10, std::floor(std::log10(value)));
     return power * (value >= 5 * power ? 5 : value >= 2 * power ? 2 : 1);
@@ -102,7 +102,7 @@ Frame chart_frame(dvec2 corner, dvec2 size, const Axis& x, const Axis& y) {
     return {{corner.x + 58, corner.y + size.y - 38}, {corner.x + size.x - 12, corner.y + 26}, widened(x), widened(y)};
 }
 
-// Of a round length, a third of the width (um) at most; `scale` in pixels per um.
+// Draws a bar of a round length, at most a third of the width (um); `scale` in pixels per um.
 void draw_scale_bar(Svg& svg, dvec2 right, double width, double scale) {
     const double length = round_below(0.3 * width);
     svg.rectangle({right.x - scale * length - 6, right.y - 22}, {scale * length + 12, 28},
@@ -112,8 +112,8 @@ void draw_scale_bar(Svg& svg, dvec2 right, double width, double scale) {
              "font-size=\"11\" text-anchor=\"middle\" fill=\"#111111\"");
 }
 
-// Means over the blocks that divide the values into `columns` by `rows`, no more than there are; NaN where no value of
-// a block is finite.
+// Means over blocks that divide the values into `columns` by `rows`, at most their own numbers; NaN where no value of a
+// block is finite.
 Grid<double> averaged(const Grid<double>& values, int columns, int rows) {
     const auto edge = [](int block, int blocks, int points) {
         return static_cast<int>(std::int64_t{block} * points / blocks);
@@ -142,7 +142,7 @@ std::vector<double> ticks(double from, double to, int count) {
     const double power = std::pow(10, std::floor(std::log10(raw)));
     const double multiple = raw / power;
     const double step = power * (multiple <= 1 ? 1 : multiple <= 2 ? 2 : multiple <= 5 ? 5 : 10);
-    // Whole numbers of steps are told apart below this; beyond, the range is as good as none.
+    // Larger multiples of a step are not distinct in double precision, so that the range counts as empty.
     constexpr double most_steps = 1e12;
     const double first = std::ceil(from / step - 1e-9), last = std::floor(to / step + 1e-9);
     if (!(step > 0) || !(std::abs(first) < most_steps && std::abs(last) < most_steps))
@@ -216,7 +216,8 @@ void draw_chart(Svg& svg, dvec2 corner, dvec2 size, std::string_view title, cons
         if (!curve.name.empty())
             named.push_back(k);
     }
-    // Beside the title, from the right: over the curves it would hide them. A letter is about 6 pixels wide.
+    // The legend stands beside the title, from the right: over the curves it would hide them. A letter is about 6
+    // pixels wide.
     double right = frame.high.x;
     for (std::size_t k = named.size(); k-- > 0;) {
         const std::string& name = curves[named[k]].name;
@@ -257,7 +258,7 @@ void draw_map(Svg& svg, dvec2 corner, dvec2 size, const Map& map) {
                       {first.x, first.x + extent.x, map.x_label, false},
                       {first.y, first.y + extent.y, map.y_label, false}};
 
-    // Twice the picture's pixels keep their sharpness on screens of high resolution.
+    // Twice the picture's pixels stay sharp on screens of high resolution.
     const auto blocks = [](int points, double length) {
         return std::clamp(static_cast<int>(std::ceil(2 * length)), 1, points);
     };

@@ -13,7 +13,7 @@
 
 namespace vkfv::report {
 
-// What an axis shows. Equal ends are widened.
+// The range and label of an axis. Equal ends are widened.
 struct Axis {
     double from = 0;
     double to = 0;
@@ -24,7 +24,7 @@ struct Axis {
 struct Curve {
     std::string name;               // empty: not in the legend
     std::vector<glm::dvec2> points; // a NaN breaks the line
-    std::vector<double> spreads;    // relative: a bar of this share of y at each point; empty: none
+    std::vector<double> spreads;    // relative length of an error bar in y at each point; empty: none
     bool line = true;
     bool markers = false;
 };
@@ -37,45 +37,45 @@ Axis axis_over(std::span<const Curve> curves, int direction, std::string label, 
 void draw_chart(Svg& svg, glm::dvec2 corner, glm::dvec2 size, std::string_view title, const Axis& x, const Axis& y,
                 std::span<const Curve> curves);
 
-// A chart for a picture of several.
+// A chart of a picture that has several.
 struct Chart {
     std::string title, x_label, y_label;
     std::vector<Curve> curves;
     bool x_decades = false;
 };
 
-// Bars that touch, over x; heights of the same count of intervals between from and to.
+// Draws bars that touch, over x; `counts` are of equal intervals between from and to.
 void draw_histogram(Svg& svg, glm::dvec2 corner, glm::dvec2 size, std::string_view title, const Axis& x,
                     std::span<const double> counts);
 
 // Values over an area, in micrometres unless the labels say otherwise; NaN is shown as not measured.
 struct Map {
     std::string title;
-    std::string unit = "um"; // beside the colour bar
+    std::string unit = "um"; // unit of the values, shown beside the colour bar
     Grid<double> values;
     double x0 = 0, y0 = 0;    // um, middle of value (0, 0)
     glm::dvec2 pitch{1, 1};   // um
-    double low = 0, high = 1; // of the palette's ends
+    double low = 0, high = 1; // values at the palette's ends
     Palette palette = Palette::height;
     std::optional<Grid<double>> brightness{}; // in [0, 1], dims the colours; none: 1 throughout
     bool colour_bar = true;
     std::string x_label = "x / um", y_label = "y / um";
-    bool of_place = true;  // else x and y are no two lengths: each fills its side
-    bool scale_bar = true; // of a place
+    bool of_place = true;  // true: x and y are lengths of a place; false: each fills its side
+    bool scale_bar = true; // for a place
     Rgb not_a_number = not_measured_colour;
 };
 
-// The map with axes, a scale bar and a colour bar. Equal scales in x and y of a place; values are averaged where
-// there are more than two of them to a pixel of the picture, along either side.
+// Draws the map with axes, a scale bar and a colour bar. Scales in x and y are equal for a place; values are averaged
+// where there are more than two of them to a pixel of the picture, along either side.
 void draw_map(Svg& svg, glm::dvec2 corner, glm::dvec2 size, const Map& map);
 
-// The values between which all but `outside` of the finite ones lie, half of them at either end; {0, 1} for none.
+// The range that holds all finite values except a share `outside`, half of it at either end; {0, 1} if there are none.
 std::pair<double, double> range_of(const Grid<double>& values, double outside);
 
 // Values from `from` to `to` at distances of 1, 2 or 5 times a power of ten, about `count` of them.
 std::vector<double> ticks(double from, double to, int count);
 
-// 1.5 k, 20 M.
+// A number with a prefix: 1.5 k, 20 M.
 std::string with_prefix(double value);
 
 } // namespace vkfv::report

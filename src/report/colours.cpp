@@ -21,7 +21,7 @@ Rgb cubehelix(double value) {
 }
 
 Rgb diverging(double value) {
-    // From white to a blue and a red of about the same brightness.
+    // The scale goes from white to a blue and a red of about the same brightness.
     const double d = 2 * value - 1, t = std::abs(d);
     const double full[2][3] = {{0.13, 0.30, 0.65}, {0.70, 0.16, 0.12}};
     const double* const end = full[d > 0];

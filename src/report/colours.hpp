@@ -1,4 +1,4 @@
-// Colours for values, and for lines that must be told apart.
+// Colours for values and for the lines of a chart.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ struct Rgb {
     std::uint8_t red = 0, green = 0, blue = 0;
 };
 
-// How a value in [0, 1] is shown; values outside take the end's colour.
+// Colour scales for a value in [0, 1]; values outside take the end's colour.
 enum class Palette {
     grey,
     // Brightness grows with the value, also in a grey print (D. A. Green, "A colour scheme for the display of
@@ -21,10 +21,10 @@ enum class Palette {
 
 Rgb colour_of(Palette palette, double value);
 
-// Where nothing was measured: a colour that no palette has.
+// The colour of points that were not measured, which no palette has.
 inline constexpr Rgb not_measured_colour{255, 214, 0};
 
-// Lines of a chart, in this order (M. Okabe, K. Ito, "Color universal design", 2008).
+// Colours of a chart's lines, in this order (M. Okabe, K. Ito, "Color universal design", 2008).
 inline constexpr std::array<const char*, 6> line_colours = {"#0072b2", "#d55e00", "#009e73",
                                                             "#cc79a7", "#e69f00", "#56b4e9"};
 

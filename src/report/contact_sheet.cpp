@@ -13,7 +13,7 @@ namespace {
 
 using glm::dvec2;
 
-constexpr double side = 236; // of an image, pixels
+constexpr double side = 236; // side of an image, pixels
 constexpr double gap = 10;
 constexpr double note_height = 20;
 constexpr dvec2 head{96, 100};
@@ -21,7 +21,7 @@ constexpr dvec2 head{96, 100};
 Grid<Rgb> shown(const Grid<float>& image, double brightest) {
     const double mean = std::accumulate(image.values.begin(), image.values.end(), 0.0) /
                         static_cast<double>(std::max<std::size_t>(1, image.values.size()));
-    // Nothing is averaged away while there are at most twice as many pixels as the picture has.
+    // Up to twice as many pixels as the picture has are kept; more are averaged.
     const int factor = std::max(1, static_cast<int>(image.columns / (2 * side)));
     Grid<Rgb> pixels(image.columns / factor, image.rows / factor);
     for (int row = 0; row < pixels.rows; ++row)

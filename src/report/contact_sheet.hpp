@@ -1,4 +1,4 @@
-// Images of a variation side by side.
+// Images of a parameter variation side by side.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -12,8 +12,8 @@ namespace vkfv::report {
 // images of different flux can be compared in their noise and contrast.
 struct ContactSheet {
     std::string title;
-    std::string row_label, column_label;                // what varies: "g"
-    std::vector<std::string> row_values, column_values; // of each row and column
+    std::string row_label, column_label;                // names of the varied parameters: "g"
+    std::vector<std::string> row_values, column_values; // values of the parameters in each row and column
     std::vector<Grid<float>> images;                    // row by row, the first row on top; one size
     std::vector<std::string> notes;                     // under each image
     double brightest = 2;

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Units whose values the inside has in another one, or that keys spell in another way.
+// Units in which values are held by another unit inside, or which keys spell differently.
 struct Unit {
     std::string_view declared;
     std::string_view in_keys;
@@ -54,10 +54,10 @@ class Declaration {
     Declaration(const Json& root, const Json& node) : root_(&root), node_(&node) { follow(); }
 
     std::string_view title() const { return title_; }
-    // Members without a unit have that of the whole: measured and true value of a parameter.
+    // Members without a unit have that of the whole, such as measured and true value of a parameter.
     std::string_view unit() const { return unit_; }
 
-    // A member by its name, and its key; none: the schema does not declare it.
+    // A member by its name, with its key; none: the schema does not declare it.
     std::optional<std::pair<std::string, Declaration>> member(std::string_view name) const {
         const auto members = node_->find("properties");
         if (members == node_->end()) {
@@ -78,7 +78,7 @@ class Declaration {
     }
 
   private:
-    // To what a reference stands for, and to the items of a list. The first unit and title on this way count.
+    // Follows references, and goes to the items of a list. The first unit and title on this way count.
     void follow() {
         while (true) {
             unit_ = unit_.empty() ? text("unit") : unit_;

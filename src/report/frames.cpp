@@ -13,9 +13,9 @@ namespace vkfv::report {
 namespace {
 
 constexpr int most_frames = 200;
-constexpr double most_frame_pixels = 6e6; // of all frames
+constexpr double most_frame_pixels = 6e6; // sum over all frames
 constexpr int most_frame_side = 512;
-constexpr double brightest_share = 1e-3; // that is cut off
+constexpr double brightest_share = 1e-3; // share of pixels that is clipped
 
 template <class Value>
 Grid<Value> means_of_blocks(const Grid<Value>& image, int block) {
@@ -49,7 +49,7 @@ Grid<Value> means_of_blocks(const Grid<Value>& image, int block) {
     return result;
 }
 
-// Which all but the brightest exceed; of a part of the pixels, which tells as well.
+// The value that only the brightest share of pixels exceeds, found from a sample of the pixels.
 float white_of(const std::vector<Grid<float>>& frames) {
     constexpr std::size_t most_values = 200000;
     std::size_t pixels = 0;

@@ -1,4 +1,4 @@
-// A stack's images for a page: few enough, small enough and in 8 bits, made while the images pass.
+// The images of a stack for a page: few enough, small enough and in 8 bits, made as the images come.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -8,26 +8,26 @@
 
 namespace vkfv::report {
 
-// Of an image of `columns` x `rows` pixels each block of `block` x `block` becomes its mean; those at the upper and
-// right end may have fewer pixels. Where nothing in a block is finite the mean is NaN, else that of what is.
+// The mean of each block of `block` x `block` pixels of an image; blocks at the upper and right end may have fewer
+// pixels. The mean is over the finite values; NaN where a block has none.
 Grid<float> block_means(const Grid<float>& image, int block);
 Grid<double> block_means(const Grid<double>& image, int block);
 
-// The smallest block by which no more than `most` pixels are left, none more than `most_a_side` along a side.
+// The smallest block that leaves at most `most` pixels, and at most `most_a_side` along a side.
 int block_for(int columns, int rows, double most, int most_a_side);
 
 struct Frames {
-    int block = 1;         // pixels of an image along the sides of one of a frame
-    int every = 1;         // images
-    int columns = 0;       // of a frame
-    int rows = 0;          //
-    float white = 0;       // the value that is shown white; 0 is black
+    int block = 1;         // side in pixels of the image block that one pixel of a frame shows
+    int every = 1;         // one frame for so many images
+    int columns = 0;       // pixels of a frame
+    int rows = 0;          // pixels of a frame
+    float white = 0;       // value shown as white; 0 is black
     std::vector<double> z; // mm
     std::vector<std::string> pngs;
 };
 
-// Takes the images of a stack in their order. It holds 24 MB at most, however long the stack, and the PNGs together
-// have little more than 6 MB.
+// Takes the images of a stack in order. It holds at most 24 MB, however long the stack, and the PNGs together little
+// more than 6 MB.
 class FrameTally {
   public:
     explicit FrameTally(int images) : images_(images) {}

@@ -16,13 +16,13 @@ using glm::dvec2;
 
 namespace {
 
-// Pixels.
+// Sizes in pixels.
 constexpr double title_size = 17;
 constexpr double margin = 24;
 constexpr double largest_height = 820;
 constexpr double largest_width = 820;
 
-// 1, 2 or 5 times a power of ten, the largest that is not more.
+// The largest of 1, 2 or 5 times a power of ten that does not exceed `most`.
 double round_length(double most) {
     const double power = std::pow(10.0, std::floor(std::log10(most)));
     return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
@@ -35,7 +35,7 @@ std::string title_of(const optics::Instrument& instrument, const std::string& na
                        1e3 / std::sqrt(instrument.constants.spectrum_centre), first_order.working_distance);
 }
 
-// Under the title, with room for the labels on the left and at the top.
+// The view of the whole instrument under the title, with room for the labels on the left and at the top.
 View main_view(const Drawing& drawing) {
     const Box bounds = drawing.bounds();
     View view;
@@ -53,7 +53,7 @@ View main_view(const Drawing& drawing) {
     return view;
 }
 
-// window: where alone shapes are drawn, cut to it by the caller.
+// window: rectangle outside of which no shape is drawn; the caller clips to it.
 void draw_shapes(Canvas& canvas, const View& view, const std::vector<Shape>& shapes, const std::optional<Box>& window) {
     canvas.svg.open_group("fill=\"none\"");
     for (const Shape& shape : shapes) {
@@ -82,7 +82,7 @@ void draw_scale_bar(Canvas& canvas, const char* id, dvec2 at, double scale) {
     canvas.write_label({end.x + 8, end.y + 0.35 * label_size}, fmt::format("{:g} mm", length), "start");
 }
 
-// To the left of `window`, from the front vertex down to the plane of best focus.
+// Draws the working distance to the left of `window`, from the front vertex down to the plane of best focus.
 void draw_working_distance(Canvas& canvas, const View& view, const Box& window, const optics::Instrument& instrument) {
     const double front = view({0, instrument.front_vertex_height}).y;
     const double focus = view({0, 0}).y;
@@ -96,7 +96,7 @@ void draw_working_distance(Canvas& canvas, const View& view, const Box& window, 
                        fmt::format("{:.3g} mm", instrument.first_order.working_distance), "end");
 }
 
-// The objective and the specimen, larger, where there is room or to the right of all that `content` encloses.
+// Draws objective and specimen enlarged, in a free place or to the right of all that `content` encloses.
 void draw_inset(Canvas& canvas, const Drawing& drawing, const View& main, const Box& content,
                 const optics::Instrument& instrument) {
     const Box& region = drawing.objective;
@@ -137,7 +137,7 @@ void draw_inset(Canvas& canvas, const Drawing& drawing, const View& main, const 
     draw_working_distance(canvas, view, window, instrument);
     draw_scale_bar(canvas, "inset-scale-bar", {corner.x + border, frame.upper.y - border}, view.scale);
     canvas.svg.close_group();
-    // What of the whole it shows.
+    // A frame marks the part of the whole that the inset shows.
     const Box marked = main(region).grown(6);
     canvas.svg.rectangle(
         marked.lower, marked.size(),

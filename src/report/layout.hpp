@@ -1,4 +1,4 @@
-// The instrument as a picture to scale, in the y-z plane: the specimen at the bottom, the illuminator from the side.
+// A drawing of the instrument to scale, in the y-z plane: the specimen at the bottom, the illuminator from the side.
 #pragma once
 
 #include "optics/instrument/instrument.hpp"

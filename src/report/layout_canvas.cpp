@@ -13,8 +13,8 @@ using glm::dvec2;
 
 namespace {
 
-// Positions as near as possible to those wished for (ascending), each at least `spacing` behind the one before:
-// isotonic regression by pooling adjacent violators.
+// Positions as close as possible to the wished ones (ascending), each at least `spacing` after the one before: isotonic
+// regression by pooling adjacent violators.
 std::vector<double> spread(const std::vector<double>& wished, const std::vector<double>& spacing) {
     struct Pool {
         double sum;
@@ -45,7 +45,7 @@ std::vector<double> spread(const std::vector<double>& wished, const std::vector<
 
 struct Row {
     const Label* label;
-    Box box; // of what it labels
+    Box box; // box of the labelled part
 };
 
 void label_beside(Canvas& canvas, std::vector<Row> rows, double edge, double side) {
@@ -90,7 +90,7 @@ void label_behind(Canvas& canvas, const Row& row) {
     canvas.write_label(place, row.label->text, !level ? "middle" : normal.x < 0 ? "end" : "start");
 }
 
-// Under a level part, to the right of an upright one, from end to end.
+// Draws a bracket from end to end of a part, under a level one or to the right of an upright one, with its label.
 void draw_bracket(Canvas& canvas, const Row& row) {
     constexpr double gap = 14;
     constexpr double tooth = 5;
@@ -106,7 +106,7 @@ void draw_bracket(Canvas& canvas, const Row& row) {
     }
 }
 
-// Over each level arm of its own.
+// Labels each horizontal arm separately.
 void label_arms(Canvas& canvas, std::vector<Row> rows) {
     constexpr double same_arm = 40;
     std::ranges::stable_sort(rows, {}, [](const Row& row) { return row.box.middle().y; });

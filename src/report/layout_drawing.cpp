@@ -38,7 +38,7 @@ Box box_of(const Shape& shape) {
     return box;
 }
 
-// From crown to heavy flint.
+// The fill colour of a glass, from crown to heavy flint.
 std::string glass(double index) {
     const double depth = std::clamp((index - 1.4) / 0.5, 0.0, 1.0);
     const auto mixed = [&](double light, double dark) {
@@ -47,7 +47,7 @@ std::string glass(double index) {
     return fmt::format("#{:02x}{:02x}{:02x}", mixed(222, 128), mixed(239, 176), mixed(249, 214));
 }
 
-// A tube as wide as the part's widest lens, an objective's nose tapered.
+// Adds a tube as wide as the part's widest lens, tapered for an objective.
 void add_housing(Shapes& shapes, const ElementSections& sections, Part part) {
     const auto& elements = sections.elements();
     std::size_t first = elements.size();
@@ -84,7 +84,7 @@ void add_housing(Shapes& shapes, const ElementSections& sections, Part part) {
     add(shapes, std::move(outline), true, housing_look);
 }
 
-// The camera's body, open to the light.
+// Adds the camera's body, open towards the light; returns its box.
 Box add_camera(Shapes& shapes, const ElementSections& sections) {
     const auto& elements = sections.elements();
     const auto& pose = elements.back().pose;
@@ -111,7 +111,8 @@ void add_immersion(Shapes& shapes, const ElementSections& sections, double index
         fmt::format("fill=\"{}\" fill-opacity=\"0.6\"", glass(index)));
 }
 
-// The glass between a surface and the next one, ground to one diameter: each goes on flat to the wider one's rim.
+// The outline of the glass between a surface and the next one, ground to one diameter: each surface continues flat to
+// the wider one's rim.
 std::vector<dvec2> lens_outline(const ElementSections& sections, std::size_t i) {
     const double own = sections.radius(i);
     const double next = sections.radius(i + 1);
@@ -157,7 +158,7 @@ void add_lenses(Shapes& shapes, const ElementSections& sections) {
     }
 }
 
-// What the plane of drawing cuts of it, or else its outline's box. Gives what encloses it.
+// Adds the section of a mesh by the plane of drawing, or else the box of its outline; returns the box around it.
 Box add_mesh(Shapes& shapes, const optics::PlacedMesh& mesh) {
     using MeshKind = optics::MeshElement::Kind;
     const bool is_glass = mesh.kind == MeshKind::glass;
@@ -197,7 +198,7 @@ void add_rays(Shapes& shapes, const std::vector<RoomRay>& rays) {
     }
 }
 
-// A stop's blades.
+// Adds the blades of a stop.
 void add_stop(Shapes& shapes, const ElementSections& sections, std::size_t i) {
     const Element& element = sections.elements()[i];
     const double radius = sections.radius(i);
@@ -224,7 +225,7 @@ void add_coating(Shapes& shapes, const ElementSections& sections, std::size_t i)
         "stroke=\"#7a3e9d\" stroke-width=\"2\"");
 }
 
-// With hatches on its back.
+// Adds a mirror with hatches on its back.
 void add_mirror(Shapes& shapes, const ElementSections& sections, std::size_t i) {
     const auto& pose = sections.elements()[i].pose;
     const double radius = sections.radius(i);
@@ -243,7 +244,7 @@ void add_mirror(Shapes& shapes, const ElementSections& sections, std::size_t i) 
     }
 }
 
-// With arrow heads, outward for a positive lens.
+// Adds an ideal lens with arrow heads, outward if it is positive.
 void add_ideal_lens(Shapes& shapes, const ElementSections& sections, std::size_t i) {
     const Element& element = sections.elements()[i];
     const auto& pose = element.pose;
@@ -280,7 +281,7 @@ void add_flat_elements(Shapes& shapes, const ElementSections& sections) {
     }
 }
 
-// A slab, and the field on it.
+// Adds a slab, and the field on it; returns its box.
 Box add_specimen(Shapes& shapes, const ElementSections& sections, double field) {
     const double half = std::max(1.3 * sections.part_radius(Part::objective), 0.02 * sections.extent());
     const double thickness = sections.slab_thickness();
@@ -298,10 +299,10 @@ void add_detector(Shapes& shapes, const optics::Pose& pose, double half_size) {
     }
 }
 
-// The band where the plane of drawing cuts it, on both sides, lit where the segment there is.
+// Adds both sections of the ring's band by the plane of drawing, lit where the segment there is lit.
 Box add_ring(Shapes& shapes, const physics::f64::RingLight& ring, double extent) {
     Box drawn;
-    const double depth = 0.012 * extent; // of its body, behind the band
+    const double depth = 0.012 * extent; // depth of its body, behind the band
     for (const double side : {-1.0, 1.0}) {
         const double turns = side > 0 ? 0.25 : 0.75;
         const int segment = static_cast<int>(turns * ring.segments);

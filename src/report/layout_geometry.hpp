@@ -28,7 +28,7 @@ struct Box {
     }
 };
 
-// Where a picture of the plane of drawing lies on the page.
+// The place of a picture of the plane of drawing on the page.
 struct View {
     double scale = 1;    // px per mm
     glm::dvec2 origin{}; // px, of y = z = 0
@@ -41,7 +41,7 @@ struct View {
     }
 };
 
-// Of the specimen's frame (mm) in the plane of drawing: (y, z).
+// The (y, z) coordinates in the plane of drawing of a point in the specimen's frame (mm).
 inline glm::dvec2 flat(glm::dvec3 point) {
     return {point.y, point.z};
 }

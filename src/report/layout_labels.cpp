@@ -20,7 +20,7 @@ Label label(std::string text, const Box& part, bool upright, bool about_objectiv
             .about_objective = about_objective};
 }
 
-// "objective 10x_0.28"
+// The label of an element's part, "objective 10x_0.28".
 std::string text_of(const Element& element) {
     return fmt::format("{} {}", name_of(element.part), element.name.of);
 }
@@ -55,7 +55,7 @@ std::vector<Label> label_parts(const optics::Instrument& instrument, const Eleme
                               .normal = flat(element.pose.axes[2]) * sections.back(i)});
         } else if (element.kind == Kind::splitter) {
             Box end;
-            end.add(sections.on_surface(i, 0.8 * sections.radius(i))); // the lower one
+            end.add(sections.on_surface(i, 0.8 * sections.radius(i))); // the lower end of the coating
             labels.push_back(label(name_of(part), sections.cube_coating() ? sections.part_box(part) : end, true));
         }
         if (role != SurfaceRole::refracting && is_limited(element)) {

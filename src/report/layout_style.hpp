@@ -10,9 +10,9 @@ namespace vkfv::report {
 
 constexpr double label_size = 13;
 constexpr double label_spacing = 17;
-constexpr double label_room = 37; // over what a label stands over
+constexpr double label_room = 37; // above a part that is labelled from above
 
-// Okabe and Ito's colours, which colour-blind people tell apart.
+// Colours are those of Okabe and Ito, which colour-blind people can distinguish.
 constexpr const char* ink = "#222222";
 constexpr const char* grey = "#8a8a8a";
 struct BundleStyle {
@@ -28,7 +28,7 @@ constexpr std::array<BundleStyle, 5> bundle_styles = {{
     {RoomRay::Bundle::imaging_axis, "#0072b2", "imaging, middle of the field"},
 }};
 
-// Helvetica's mean advance; wide enough to keep labels apart.
+// The width of a text by Helvetica's mean advance; wide enough to keep labels apart.
 inline double width_of(const std::string& text, double size = label_size) {
     return 0.56 * size * static_cast<double>(text.size());
 }

@@ -19,7 +19,7 @@ std::string escaped(std::string_view text) {
             result += "&quot;";
             break;
         default:
-            // XML has no other control characters.
+            // XML allows no other control characters.
             result += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
         }
     }

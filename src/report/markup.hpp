@@ -1,4 +1,4 @@
-// Text within SVG and HTML.
+// Escapes text for SVG and HTML.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,11 +8,11 @@
 
 namespace vkfv::report {
 
-// As the content of an element, or of an attribute between double quotes; control characters become spaces, new lines
+// Text for the content of an element or an attribute in double quotes; control characters become spaces, new lines
 // stay.
 std::string escaped(std::string_view text);
 
-// As the content of a script element: no markup can begin in it. What is not finite becomes null.
+// JSON for the content of a script element, in which no markup can begin. Numbers that are not finite become null.
 std::string json_text(const nlohmann::ordered_json& json);
 
 } // namespace vkfv::report

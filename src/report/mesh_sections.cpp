@@ -12,7 +12,8 @@ namespace {
 
 using MeshEdge = std::pair<std::uint32_t, std::uint32_t>;
 
-// A facet that the plane meets is a piece of a line between two of its edges; each edge ends two pieces at most.
+// Pieces of section lines. The section of a facet is a piece of a line between two of its edges; each edge ends at most
+// two pieces.
 using Pieces = std::multimap<MeshEdge, MeshEdge>;
 
 Pieces pieces_of(const optics::Facets& facets) {
@@ -39,7 +40,7 @@ glm::dvec2 crossing(const optics::Facets& facets, const MeshEdge& edge) {
     return {point.y, point.z};
 }
 
-// Takes a piece that begins at the edge out of them, both ways; gives its other end.
+// Removes a piece that begins at the edge, in both directions; returns its other end.
 std::optional<MeshEdge> step(Pieces& pieces, const MeshEdge& from) {
     const auto piece = pieces.find(from);
     if (piece == pieces.end()) {
@@ -52,7 +53,7 @@ std::optional<MeshEdge> step(Pieces& pieces, const MeshEdge& from) {
     return to;
 }
 
-// The line that begins at this edge, taken out of the pieces.
+// The line that begins at this edge; its pieces are removed.
 SectionLine line_from(Pieces& pieces, const MeshEdge& start, const optics::Facets& facets) {
     SectionLine line;
     line.points.push_back(crossing(facets, start));
@@ -69,7 +70,7 @@ SectionLine line_from(Pieces& pieces, const MeshEdge& start, const optics::Facet
 
 std::vector<SectionLine> section_of(const optics::Facets& facets) {
     Pieces pieces = pieces_of(facets);
-    std::vector<MeshEdge> ends; // of lines that are not closed
+    std::vector<MeshEdge> ends; // ends of lines that are not closed
     for (const auto& [edge, other] : pieces) {
         if (pieces.count(edge) == 1) {
             ends.push_back(edge);
@@ -77,7 +78,7 @@ std::vector<SectionLine> section_of(const optics::Facets& facets) {
     }
     std::vector<SectionLine> lines;
     for (const MeshEdge& end : ends) {
-        if (pieces.contains(end)) { // else it was the other end of a line before
+        if (pieces.contains(end)) { // else it was the other end of an earlier line
             lines.push_back(line_from(pieces, end, facets));
         }
     }

@@ -1,4 +1,4 @@
-// What the plane of drawing, x = 0, cuts of a mesh.
+// Sections of a mesh by the plane of drawing, x = 0.
 #pragma once
 
 #include "optics/train/mesh_element.hpp"
@@ -14,7 +14,7 @@ struct SectionLine {
     bool closed = false;
 };
 
-// Of a closed mesh all lines are closed. Empty: the plane meets it nowhere.
+// The section of a mesh, empty if the plane does not meet it. All lines of a closed mesh are closed.
 std::vector<SectionLine> section_of(const optics::Facets& facets);
 
 } // namespace vkfv::report

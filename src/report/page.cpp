@@ -12,7 +12,7 @@ namespace vkfv::report {
 
 namespace {
 
-// Libraries, with the texts that their licences ask for.
+// Embedded libraries, with the texts that their licences require.
 struct Library {
     std::string_view script;
     std::string_view name;
@@ -49,7 +49,7 @@ void Page::paragraph(std::string_view text) {
 }
 
 void Page::table(std::string_view caption, const std::vector<std::vector<std::string>>& rows) {
-    // It can be moved by the keyboard where the page is too narrow for it.
+    // The table can be scrolled by the keyboard where the page is too narrow for it.
     body_ += fmt::format("<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\">\n<table>\n"
                          "<caption>{0}</caption>\n",
                          escaped(caption));
@@ -69,8 +69,8 @@ void Page::table(std::string_view caption, const std::vector<std::vector<std::st
 }
 
 void Page::picture(std::string_view svg, std::string_view what_it_shows) {
-    // An image of its own: identifiers within it do not meet those of other pictures.
-    // It can be moved where the page is too narrow for its texts.
+    // The picture is an image of its own, so that its identifiers do not clash with those of other pictures. It can be
+    // scrolled where the page is too narrow for its texts.
     body_ +=
         fmt::format("<p class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Drawing\"><img class=\"drawing\" "
                     "alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"/></p>\n",

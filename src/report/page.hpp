@@ -1,5 +1,5 @@
-// A page of HTML, well-formed as XML too, that carries all it shows inside itself: texts, pictures, data, scripts and
-// their licences. The same calls give the same bytes.
+// A page of HTML, also well-formed XML, that contains all it shows: texts, pictures, data, scripts and their licences.
+// The same calls give the same bytes.
 #pragma once
 
 #include <string>
@@ -8,25 +8,26 @@
 
 namespace vkfv::report {
 
-// Texts are escaped.
+// A page under construction. All texts are escaped.
 class Page {
   public:
-    // What follows, up to the next. id: one word, of the link to it.
+    // Begins a section, which ends at the next one. id: one word, for links to it.
     void section(std::string_view id, std::string_view title);
-    // Within a section.
+    // Adds a heading within a section.
     void heading(std::string_view text);
     void paragraph(std::string_view text);
-    // The first row is the head; the first cell of each other row names it. Tables are told apart by their captions.
+    // Adds a table. The first row is the head; the first cell of each other row names it. Captions distinguish tables.
     void table(std::string_view caption, const std::vector<std::vector<std::string>>& rows);
-    // An SVG document, in its own size or the page's width.
+    // Adds an SVG document, in its own size or the page's width.
     void picture(std::string_view svg, std::string_view what_it_shows);
-    // Lines of text as they stand, folded away under a title.
+    // Adds lines of text unchanged, folded away under a title.
     void folded(std::string_view title, std::string_view lines);
-    // A file of src/report/page, as it stands.
+    // Adds a file of src/report/page unchanged.
     void part(std::string_view file);
-    // For the scripts, found by its id: letters that need no escape, as JSON (report::json_text()) and base64 have.
+    // Adds data for the scripts, found by its id: only characters that need no escape, as in JSON (report::json_text())
+    // and base64.
     void data(std::string_view id, std::string_view text);
-    // Run in this order, after all data: a file of src/report/page or of a library.
+    // Adds a script, a file of src/report/page or of a library. Scripts run in this order, after all data.
     void script(std::string_view file);
 
     std::string document(std::string_view title) const;

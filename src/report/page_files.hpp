@@ -5,7 +5,7 @@
 
 namespace vkfv::report {
 
-// By its file name: "page.css", "d3.min.js", "results.schema.json". std::out_of_range for any other.
+// A file by its name: "page.css", "d3.min.js", "results.schema.json". std::out_of_range for any other.
 std::string_view page_file(std::string_view name);
 
 } // namespace vkfv::report

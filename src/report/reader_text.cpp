@@ -17,7 +17,7 @@ namespace {
 
 constexpr int most_digits = 4;
 constexpr int uncertain_digits = 2;
-constexpr int least_exponent = -4, most_exponent = 5; // written without a power of ten
+constexpr int least_exponent = -4, most_exponent = 5; // range that is written without a power of ten
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> units = {{
     {"um3_per_um2", "µm³/µm²"},
@@ -43,7 +43,7 @@ std::string superscript(int number) {
     return text;
 }
 
-// With a minus of the width of a plus. Fewer than no decimals: the last digits before the point are zeros.
+// The number with a minus as wide as a plus. Negative decimals: the last digits before the point are zeros.
 std::string fixed(double value, int decimals) {
     const double unit = decimals < 0 ? std::pow(10.0, -decimals) : 1;
     const double shown = decimals < 0 ? std::round(value / unit) * unit : value;
@@ -52,7 +52,7 @@ std::string fixed(double value, int decimals) {
     return value < 0 && !zero ? "−" + text : text;
 }
 
-// Of the value rounded to so many digits.
+// The decimal exponent of the value rounded to so many digits.
 int exponent_of(double value, int digits) {
     const auto text = fmt::format("{:.{}e}", value, digits - 1);
     return std::atoi(text.c_str() + text.find('e') + 1);
@@ -184,7 +184,7 @@ std::vector<std::string> reader_values(const std::vector<std::string>& values) {
 std::string reader_count(std::int64_t count) {
     std::string text = fmt::format("{}", std::abs(count));
     for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0 && text.size() > 4; at -= 3) {
-        text.insert(static_cast<std::size_t>(at), "\u202f"); // a narrow space that is not broken
+        text.insert(static_cast<std::size_t>(at), "\u202f"); // a narrow no-break space
     }
     return (count < 0 ? "−" : "") + text;
 }

@@ -14,14 +14,14 @@ using optics::Element;
 using physics::f64::TrainResult;
 using Bundle = RoomRay::Bundle;
 
-// An element on the light's way, which goes through it or is reflected.
+// An element on the path of light, which passes it or is reflected by it.
 struct Meeting {
     std::size_t element = 0;
     bool reflects = false;
 };
 using Way = std::vector<Meeting>;
 
-// The elements up to here are the illumination's alone.
+// The index at which the imaging's elements begin; those before are the illumination's alone.
 std::size_t imaging_begin(const std::vector<Element>& elements) {
     const auto first = std::ranges::find_if(elements, [](const Element& element) {
         return element.part == optics::Part::cover_glass || element.part == optics::Part::objective;
@@ -37,7 +37,7 @@ Way imaging_way(const std::vector<Element>& elements) {
     return way;
 }
 
-// To the splitter, and from there against the imaging's direction.
+// The path of illumination: to the splitter, and from there against the imaging's direction.
 Way illumination_way(const std::vector<Element>& elements, bool is_ring) {
     Way way;
     const std::size_t begin = imaging_begin(elements);
@@ -82,7 +82,7 @@ class RoomTracer {
         }
     }
 
-    // direction: unit. None: the ray does not pass. The status of its end is not asked for.
+    // Traces a ray. direction: unit. None if the ray does not pass; the status of its end is not needed.
     std::optional<RoomRay> trace(glm::dvec3 position, glm::dvec3 direction, double index, Bundle bundle) {
         RoomRay room_ray{.bundle = bundle, .vertices = {position}, .elements = {RoomRay::no_element}};
         TrainResult state{};
@@ -122,7 +122,7 @@ class RoomTracer {
         return room_ray;
     }
 
-    // The same, on to the plane of best focus.
+    // Traces a ray and extends it to the plane of best focus.
     std::optional<RoomRay> trace_to_focus(glm::dvec3 position, glm::dvec3 direction, double index, Bundle bundle) {
         auto ray = trace(position, direction, index, bundle);
         if (ray) {
@@ -135,7 +135,7 @@ class RoomTracer {
 
   private:
     static constexpr physics::f64::Light light{.spectral = 0, .wave_number = 1, .survival = 0};
-    // Both ways round: surfaces are met towards their z.
+    // A surface in both orientations, as surfaces are met towards their z.
     struct Stand {
         int element = 0;
         bool reflects = false;
@@ -144,10 +144,11 @@ class RoomTracer {
         optics::PlacedSurface astern;
     };
     std::vector<Stand> way_;
-    glm::dvec3 direction_{}; // of the last ray, behind the last element
+    glm::dvec3 direction_{}; // direction of the last ray after the last element
 };
 
-// `trace_at(sine)` for `count` sines from margin to margin of the widest stretch in [-greatest, greatest] that passes.
+// The rays `trace_at(sine)` for `count` sines from margin to margin of the widest passing stretch in [-greatest,
+// greatest].
 template <class Trace>
 std::vector<RoomRay> fan(const Trace& trace_at, double greatest, int count) {
     constexpr int steps = 2000; // a stretch of a thousandth of the range is still found
@@ -224,7 +225,7 @@ void add_disc(std::vector<RoomRay>& rays, const optics::Instrument& instrument) 
             greatest, count);
     };
     append(rays, from(0, Bundle::illumination_centre, 5));
-    // A source larger than the pupil: from the rim of what passes.
+    // A source may be larger than the pupil, so rays start at the rim of its passing part.
     for (const double side : {1.0, -1.0}) {
         constexpr int heights = 40;
         std::vector<RoomRay> rim;

@@ -9,7 +9,7 @@
 
 namespace vkfv::report {
 
-// Attributes are written as they are given; text is escaped.
+// An SVG document under construction. Attributes are written as they are given; text is escaped.
 class Svg {
   public:
     void open_group(std::string_view attributes);
@@ -18,15 +18,15 @@ class Svg {
     void path(std::span<const glm::dvec2> points, bool closed, std::string_view attributes = {});
     void rectangle(glm::dvec2 corner, glm::dvec2 size, std::string_view attributes = {});
     void text(glm::dvec2 at, std::string_view content, std::string_view attributes = {});
-    // A PNG's bytes, stretched over the rectangle without smoothing.
+    // Adds a PNG's bytes as an image, stretched over the rectangle without smoothing.
     void image(glm::dvec2 corner, glm::dvec2 size, const std::string& png);
-    // Groups with clip-path="url(#id)" are cut to it.
+    // Defines a clipping rectangle for groups with clip-path="url(#id)".
     void clip_rectangle(std::string_view id, glm::dvec2 corner, glm::dvec2 size);
 
-    // What another has drawn, over what stands here.
+    // Adds the contents of another picture over the present ones.
     void append(const Svg& other);
 
-    // On white.
+    // The document, on a white background.
     std::string document(glm::dvec2 size, std::string_view title) const;
 
   private:

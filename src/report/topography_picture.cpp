@@ -35,7 +35,7 @@ Map map_of(const std::string& title, const surface::HeightMap& heights, double l
     return map;
 }
 
-// The axis of brightness runs from black to all but the brightest thousandth.
+// The image as a map. The brightness scale runs from black to the value that only the brightest thousandth exceeds.
 template <class Value>
 Map map_of_image(const std::string& title, const Grid<Value>& image, const surface::HeightMap& place,
                  const std::string& unit) {
@@ -81,7 +81,7 @@ std::string topography_picture(const TopographyPicture& picture) {
     const auto [low_true, high_true] = true_range.get();
     const double low = std::min(low_measured, low_true), high = std::max(high_measured, high_true);
 
-    // Each map by a thread of its own, put together in their order.
+    // Each map is drawn by a thread of its own; they are put together in order.
     std::vector<std::future<Svg>> maps;
     const auto draw = [&](const std::function<Map()>& make) {
         maps.push_back(std::async(std::launch::async, [corner = next(), make] {
@@ -101,7 +101,7 @@ std::string topography_picture(const TopographyPicture& picture) {
         });
     if (picture.all_in_focus) {
         draw([&] { return map_of_image("All in focus", *picture.all_in_focus, picture.measured, picture.image_unit); });
-        // The heights' colours, as bright as the image.
+        // The overlay has the colours of the heights and the brightness of the image.
         draw([&] {
             Map overlay = map_of("Heights over the image", picture.measured, low, high, Palette::height);
             const Map image = map_of_image("", *picture.all_in_focus, picture.measured, picture.image_unit);

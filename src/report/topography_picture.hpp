@@ -10,25 +10,25 @@
 
 namespace vkfv::report {
 
-// What a picture of heights shows; all maps on one grid.
+// The contents of a picture of heights; all maps on one grid.
 struct TopographyPicture {
     std::string title;
     surface::HeightMap measured;
     std::optional<surface::HeightMap> truth;
-    std::optional<surface::HeightMap> deviation; // measured less true
+    std::optional<surface::HeightMap> deviation; // measured minus true
     std::optional<Grid<float>> all_in_focus;
-    std::string image_unit = "W"; // of its values
-    std::vector<Chart> charts;    // besides
+    std::string image_unit = "W"; // unit of its values
+    std::vector<Chart> charts;    // further charts
 };
 
 // Measured heights, truth and deviation over x and y (one height scale for the first two), the all-in-focus image
 // alone and under the heights' colours, the profile along the middle row, and the charts.
 std::string topography_picture(const TopographyPicture& picture);
 
-// What an image's values are.
+// The quantity of an image's values.
 struct PixelQuantity {
     const char* unit;
-    const char* label; // of an axis
+    const char* label; // for an axis
 };
 inline constexpr PixelQuantity light_of_pixels{"W", "radiant flux of a pixel / W"};
 inline constexpr PixelQuantity grey_values_of_pixels{"DN", "grey value / DN"};

@@ -18,7 +18,7 @@ namespace vkfv::scan {
 
 namespace {
 
-// A file: this, the exposure, what of it is done, the checksum of the numbers, a line each; then the numbers.
+// A file has a line each for this text, the exposure, the work done, and the checksum of the numbers; then the numbers.
 constexpr std::string_view first_line = "vkfv checkpoint 1\n";
 
 std::string exposure_line(const std::string& digest, std::uint32_t image) {
@@ -29,7 +29,7 @@ std::string sum_line(std::uint64_t done, std::string_view numbers) {
     return Digest().add(fmt::format("{}\n", done)).add(numbers).sha256() + "\n";
 }
 
-// Takes a beginning off.
+// Removes a beginning from the text; false if the text does not begin with it.
 bool took(std::string_view& text, std::string_view beginning) {
     const bool starts = text.starts_with(beginning);
     text.remove_prefix(starts ? beginning.size() : 0);

@@ -1,4 +1,4 @@
-// Exposures that are kept half done, a file each.
+// Checkpoints of unfinished exposures, in a file each.
 #pragma once
 
 #include "trace/interface/checkpoint.hpp"
@@ -15,14 +15,14 @@ class CheckpointFiles final : public trace::Checkpoints {
   public:
     using Name = std::function<std::filesystem::path(std::uint32_t image)>;
 
-    // digest: of all that the images' bits depend on; a file of another one is not taken up. interval: s, above 0.
+    // digest: of all that the images' bits depend on; files with another digest are not used. interval: s, above 0.
     CheckpointFiles(Name name, std::string digest, double interval);
 
     double interval() const override { return interval_; }
-    // A file that is there but not this exposure's, or not whole, is told to the log.
+    // A file that belongs to another exposure or is damaged is logged and not used.
     std::optional<trace::Checkpoint> load(std::uint32_t image) const override;
     void save(std::uint32_t image, const trace::Checkpoint& checkpoint) const override;
-    // When the image is stored.
+    // Removes the checkpoint when the image is stored.
     void drop(std::uint32_t image) const;
 
   private:

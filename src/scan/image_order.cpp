@@ -19,7 +19,7 @@ bool is_digit(char c) {
     return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-// Takes the number that `text` begins with off it; without leading zeros, so that the longer is the larger.
+// Takes the leading number off `text`; returns it without leading zeros, so that a longer one is larger.
 std::string_view take_number(std::string_view& text) {
     const auto end = static_cast<std::size_t>(std::ranges::find_if_not(text, is_digit) - text.begin());
     std::string_view number = text.substr(0, end);
@@ -28,7 +28,7 @@ std::string_view take_number(std::string_view& text) {
     return number;
 }
 
-// A name as texts and the numbers between them.
+// A name split into texts and the numbers between them.
 struct Parts {
     std::vector<std::string> texts;   // one more than numbers
     std::vector<std::string> numbers; // "-5", "0.5", "007"
@@ -60,19 +60,19 @@ Parts parts_of(std::string_view name) {
     return parts;
 }
 
-// What stands behind the point.
+// The digits after the decimal point.
 std::string_view decimals(std::string_view number) {
     const auto point = number.find('.');
     return point == std::string_view::npos ? std::string_view() : number.substr(point + 1);
 }
 
-// The values of the one number in which the names differ, and the text behind it.
+// The values of the one number in which the names differ, and the text after it.
 struct Numbers {
     std::vector<double> values;
     std::string behind;
 };
 
-// None if they differ otherwise.
+// Finds the number in which the names differ; none if they do not differ in exactly one number.
 std::optional<Numbers> numbers_of(const std::vector<std::string>& names) {
     std::vector<Parts> all;
     std::ranges::transform(names, std::back_inserter(all), parts_of);
@@ -94,12 +94,13 @@ std::optional<Numbers> numbers_of(const std::vector<std::string>& names) {
         return std::nullopt;
     }
     const auto text = [&](const Parts& parts) -> const std::string& { return parts.numbers[*differs]; };
-    // 1.9, 1.10 count, as versions do; decimals have no zero at their end unless all have as many.
+    // Numbers such as 1.9, 1.10 are counts, as in versions; decimals have no zero at their end unless all have as many
+    // digits.
     const bool even = std::ranges::all_of(
         all, [&](const Parts& parts) { return decimals(text(parts)).size() == decimals(text(all.front())).size(); });
     const bool counts =
         !even && std::ranges::any_of(all, [&](const Parts& parts) { return decimals(text(parts)).ends_with('0'); });
-    constexpr std::size_t exact_digits = 15; // of a double
+    constexpr std::size_t exact_digits = 15; // digits that a double holds exactly
     const bool separated = std::ranges::all_of(all, [&](const Parts& parts) { return text(parts).front() == '-'; });
     Numbers numbers{.values = {}, .behind = all.front().texts[*differs + 1]};
     for (const Parts& parts : all) {
@@ -112,7 +113,7 @@ std::optional<Numbers> numbers_of(const std::vector<std::string>& names) {
     return numbers;
 }
 
-// mm of the unit that a text begins with, behind a space or '_' or none; 0: of no unit.
+// Length in mm of the unit at the beginning of a text, after a space or '_' or nothing; 0: there is no unit.
 double unit_at(std::string_view text) {
     text.remove_prefix(!text.empty() && (text.front() == ' ' || text.front() == '_') ? 1 : 0);
     for (const auto& [unit, length] : std::initializer_list<std::pair<std::string_view, double>>{
@@ -125,15 +126,15 @@ double unit_at(std::string_view text) {
     return 0;
 }
 
-// How many steps each of ascending values is above the first; none if they have no step in common. Decimals are
-// rounded ones.
+// The number of steps of each of the ascending values above the first; none if they have no common step. Tolerates
+// rounded decimals.
 std::optional<std::vector<int>> steps_of(const std::vector<double>& values, double& step) {
     std::vector<double> differences(values.size());
     std::adjacent_difference(values.begin(), values.end(), differences.begin());
     differences.erase(differences.begin());
     auto sorted = differences;
     std::ranges::sort(sorted);
-    step = sorted[sorted.size() / 2]; // the one that most have
+    step = sorted[sorted.size() / 2]; // the most frequent step
     constexpr double tolerance = 0.1, most_steps = 1e6;
     std::vector<int> steps = {0};
     std::size_t single = 0;
@@ -155,7 +156,7 @@ std::optional<std::vector<int>> steps_of(const std::vector<double>& values, doub
 
 constexpr std::size_t least_of_a_series = 3;
 
-// Names by what they are but for their numbers: their places.
+// The indices of names that are alike except for their numbers, by the texts between these.
 std::map<std::vector<std::string>, std::vector<std::size_t>> alike_names(const std::vector<std::string>& names) {
     std::map<std::vector<std::string>, std::vector<std::size_t>> alike;
     for (std::size_t k = 0; k < names.size(); ++k) {

@@ -30,7 +30,7 @@ bool is_image(const std::filesystem::path& file) {
     return std::ranges::find(extensions, extension) != extensions.end() && file.filename().string().front() != '.';
 }
 
-// The one of `count` that is asked for, from 0.
+// The chosen one of `count` channels or frames, from 0.
 int chosen(const std::filesystem::path& path, const std::string& kind, const std::optional<int>& asked, int count,
            const StatedSeries& stated) {
     if (count == 1 && !asked) {
@@ -48,7 +48,7 @@ int chosen(const std::filesystem::path& path, const std::string& kind, const std
     return *asked - 1;
 }
 
-// The names of files with their endings behind a '/', so that files of different endings are not alike.
+// The names of files with their endings after a '/', so that files of different endings are not alike.
 std::vector<std::string> names_with_endings(const std::vector<std::filesystem::path>& files) {
     std::vector<std::string> names;
     for (const auto& file : files) {
@@ -57,7 +57,8 @@ std::vector<std::string> names_with_endings(const std::vector<std::filesystem::p
     return names;
 }
 
-// Which images have the size and channels that four of five have. All, if there are no such.
+// True for the images with the size and channels that at least four of five have; true for all if there is no such
+// size.
 std::vector<bool> of_one_size(const std::vector<images::ImageStatement>& statements) {
     using Size = std::tuple<int, int, int>;
     const auto size_of = [](const images::ImageStatement& image) {
@@ -76,7 +77,7 @@ std::vector<bool> of_one_size(const std::vector<images::ImageStatement>& stateme
     return result;
 }
 
-// Those of which `kept` is true stay; the others are named.
+// Keeps the files for which `kept` is true; the others are named in a warning.
 void leave_out(std::vector<std::filesystem::path>& files, const std::vector<bool>& kept,
                const std::filesystem::path& folder, const std::string& reason) {
     std::vector<std::filesystem::path> rest;
@@ -126,7 +127,7 @@ void ImageSeries::take_folder(const std::filesystem::path& path) {
                     "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several "
                     "pages. Develop a camera's raw files to TIFF, all with the same settings.");
     }
-    std::ranges::sort(files); // the folder has no order of its own
+    std::ranges::sort(files); // the folder's own order is arbitrary
     leave_out(files, of_one_series(names_with_endings(files)), path, "its name is not like those of the others");
     if (const auto series = several_series(names_with_endings(files)); !series.empty()) {
         std::vector<std::string> one_of_each;
@@ -188,7 +189,7 @@ std::vector<Grid<float>> ImageSeries::read(int image) const {
     for (std::size_t channel = 0; channel < std::min(before.size(), after.size()); ++channel) {
         auto& values = before[channel].values;
         const auto& others = after[channel].values;
-        if (values.size() == others.size()) { // else refused where that image comes
+        if (values.size() == others.size()) { // another size is refused where that image is read
             std::ranges::transform(values, others, values.begin(),
                                    [share](float a, float b) { return a + share * (b - a); });
         }

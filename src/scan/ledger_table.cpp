@@ -10,7 +10,7 @@ namespace vkfv::scan {
 
 namespace {
 
-// Of a line of RFC 4180 without line ends in its fields.
+// The fields of a line of CSV (RFC 4180) without line ends in its fields.
 std::vector<std::string> fields_of(const std::string& line) {
     std::vector<std::string> fields(1);
     bool quoted = false;

@@ -1,4 +1,4 @@
-// The ledger of a stack as its folder has it.
+// The ledger of a stack, read from its folder.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@ namespace vkfv::scan {
 
 struct LedgerShare {
     std::string name; // "detected", "vignetted at imaging 3 (10x_0.28 3)"
-    double power = 0; // W, the images' mean
+    double power = 0; // W, mean over the images
 };
 
 struct MeanLedger {
@@ -17,7 +17,7 @@ struct MeanLedger {
     std::vector<LedgerShare> shares;
 };
 
-// Empty where there is no ledger.csv, or none that can be read.
+// The mean ledger of a stack; empty if ledger.csv is missing or cannot be read.
 MeanLedger mean_ledger(const std::filesystem::path& folder);
 
 } // namespace vkfv::scan

@@ -23,7 +23,7 @@ namespace {
 } // namespace
 
 double ScanPlan::position_count() const {
-    constexpr double tolerance = 1e-6; // of a step: far above rounding, far below any positioning error
+    constexpr double tolerance = 1e-6; // share of a step: far above rounding, far below any positioning error
     return std::floor((z_stop - z_start) / z_step + tolerance) + 1;
 }
 

@@ -12,13 +12,12 @@ struct ScanPlan {
     double z_stop = 0;
     double z_step = 0;
 
-    // z_start + i * z_step for i = 0, 1, ... while not beyond z_stop, which counts as reached within a
-    // millionth of a step: decimal steps do not lose their last image to rounding. Throws InputError for a
-    // step that is not positive, a stop below the start, a value that is not finite, and more positions than
-    // an image series can number (most_positions).
+    // z_start + i * z_step for i = 0, 1, ... up to z_stop, which counts as reached within a millionth of a step:
+    // decimal steps do not lose their last image to rounding. Throws InputError for a step that is not positive, a stop
+    // below the start, a value that is not finite, and more positions than an image series can number (most_positions).
     std::vector<double> positions() const;
 
-    // How many these are, unchecked; a number of any size where z_step is small.
+    // The number of positions, unchecked; it may be any size if z_step is small.
     double position_count() const;
 };
 

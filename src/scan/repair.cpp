@@ -24,11 +24,11 @@ namespace fs = std::filesystem;
                 "Nothing was written. Trace the stack again from its first configuration, into another folder.");
 }
 
-// Throws InputError unless every row of the ledger is one that an image carries.
+// Throws InputError unless every row of the ledger is stored in an image.
 void require_rows_of(const fs::path& file, const std::set<std::string>& rows) {
     std::error_code none;
     if (!fs::exists(file, none)) {
-        return; // of a shard, whose images have their rows alone
+        return; // a shard has no ledger, as its images have their rows
     }
     std::istringstream lines(read_file(file));
     std::string line;

@@ -24,7 +24,7 @@ namespace vkfv::scan {
 
 namespace {
 
-// Of an image, for programs that watch.
+// Figures of an image, for programs that watch.
 LogFields fields_of(int image, double z, const trace::Image& exposure) {
     double detected = 0, lost = 0;
     for (const auto& entry : exposure.ledger.entries) {
@@ -69,7 +69,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         of_shard.push_back(image);
         if (store.stored(image)) {
             ++summary.kept;
-            checkpoints->drop(static_cast<std::uint32_t>(image)); // of a run that was killed between the two
+            checkpoints->drop(static_cast<std::uint32_t>(image)); // left by a run that was killed before dropping it
         } else {
             to_trace.push_back(image);
         }
@@ -84,7 +84,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     };
     tell_what_is_stored();
 
-    std::mutex counting; // of the summary
+    std::mutex counting; // guards the summary
     const auto write = [&](int image, const trace::Image& exposure, const Frame& frame) {
         try {
             store.store(image, exposure, frame);
@@ -103,8 +103,8 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         tell_what_is_stored();
         progress.advance(exposure.rays, fields_of(image, positions[static_cast<std::size_t>(image)], exposure));
     };
-    // No more images wait to be written than threads write: they would only hold memory while the disk is the slower
-    // part.
+    // At most as many images wait to be written as threads write: more would only hold memory while the disk is the
+    // slower part.
     const int writers = std::clamp(static_cast<int>(std::thread::hardware_concurrency()) / 4, 1, 4);
     JobQueue writing(writers, static_cast<std::size_t>(writers));
     JobQueue visiting(1, 2);
@@ -114,7 +114,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         auto to_begin = to_trace.begin();
         auto to_take = to_trace.begin();
         auto last = std::chrono::steady_clock::now();
-        std::vector<double> device_ends; // of the image before, of each device
+        std::vector<double> device_ends; // end of the previous image on each device
         for (const int image : of_shard) {
             const double z = positions[static_cast<std::size_t>(image)];
             if (to_take == to_trace.end() || *to_take != image) {
@@ -132,7 +132,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
             }
             auto exposure = std::make_shared<trace::Image>(under_way.front().get());
             under_way.pop_front();
-            // Of the wall clock, what no image before has taken.
+            // An image counts the wall clock that no image before it has counted.
             const auto now = std::chrono::steady_clock::now();
             exposure->seconds = std::min(exposure->seconds, std::chrono::duration<double>(now - last).count());
             last = now;
@@ -153,7 +153,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         trace_all();
         visiting.finish();
     } catch (...) {
-        writing.finish(); // what was traced before is kept
+        writing.finish(); // images traced before are kept
         throw;
     }
     writing.finish();

@@ -1,4 +1,4 @@
-// The exposures of a stack, from the first that is missing to the last.
+// Traces the missing exposures of a stack.
 #pragma once
 
 #include "core/messages/progress.hpp"
@@ -15,26 +15,26 @@ struct StackSummary {
     int traced = 0; // images of this run
     std::uint64_t rays = 0;
     double trace_seconds = 0;  // wall clock of the traces of this run
-    double device_seconds = 0; // of them, the devices' work by their own clocks
-    double device_span = 0;    // on these clocks, from the first image's beginning to the last one's end
-    bool complete = false;     // every image of the stack is stored, as far as the store looks
+    double device_seconds = 0; // the devices' work in that time, by their own clocks
+    double device_span = 0;    // by these clocks, from the beginning of the first image to the end of the last
+    bool complete = false;     // every image of the stack is stored, as far as the store checks
 };
 
-// Looks at an image of the shard, as it is stored.
+// Receives an image of the shard as it is stored.
 using ImageVisitor = std::function<void(int image, Grid<float> values)>;
-// Makes of an exposure what is stored: see light_itself().
+// Makes the stored frame of an exposure: see light_itself().
 using ImageDeveloper = std::function<Frame(int image, const trace::Image& exposure)>;
 
-// Radiant flux per pixel in W.
+// The frame of radiant flux per pixel in W.
 Frame light_itself(int image, const trace::Image& exposure);
 
-// Exposes and stores all images of the store's shard that it lacks. While the tracer works on the next ones, images are
-// written and visited by other threads, visited by one.
-// The image's number keys its random numbers, so an image does not depend on which run traced it. Reports the
-// images of the shard. `visit` sees every image of the shard once, in their order: those stored before from
-// the disk, the others when they have been traced. Throws what the tracer throws, and RunError if an image cannot be
-// stored: what is stored stays, and the same call continues. checkpoint_interval: s, after which a long exposure is
-// kept half done; 0: none is. develop: of what is traced now; its values must be as the store's pixels give them back.
+// Exposes and stores all images of the store's shard that it lacks. While the tracer works on the next ones, other
+// threads write images, and one visits them. The image's number keys its random numbers, so an image does not depend on
+// which run traced it. Reports the images of the shard. `visit` sees every image of the shard once, in order: those
+// stored before from the disk, the others when they have been traced. checkpoint_interval: s, after which a long
+// exposure is saved unfinished; 0: never. develop: converts the images traced now; its values must be as the store's
+// pixels give them back. Throws what the tracer throws, and RunError if an image cannot be stored: stored images stay,
+// and the same call continues.
 StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress,
                        const ImageVisitor& visit = {}, double checkpoint_interval = 0,
                        const ImageDeveloper& develop = light_itself);

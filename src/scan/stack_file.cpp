@@ -48,7 +48,7 @@ void write_stack_file(ImageStore& store) {
 }
 
 std::uint64_t stack_file_bytes(std::uint64_t images, std::uint64_t pixels, PixelType type) {
-    constexpr std::uint64_t directory = 1024; // more than one takes
+    constexpr std::uint64_t directory = 1024; // bytes, more than a directory takes
     return images * (pixels * (type == PixelType::float32 ? 4u : type == PixelType::uint16 ? 2u : 1u) + directory);
 }
 

@@ -29,7 +29,7 @@ std::vector<std::string> lines_of(std::string_view text) {
     return lines;
 }
 
-// How messages name the table of a header line; arrays: how many tables there were of each array so far. "[[source]]"
+// The name of the table of a header line in messages. arrays: number of tables of each array so far. "[[source]]"
 // becomes "source[1]" if it is the second, and "[source.spectrum]" below it "source[1].spectrum".
 std::string table_of(const std::string& header, std::map<std::string, int>& arrays) {
     const bool one_of_several = header.starts_with("[[");
@@ -46,7 +46,7 @@ std::string table_of(const std::string& header, std::map<std::string, int>& arra
     return name;
 }
 
-// "[trace]" and "seed = 1" become "trace.seed" -> "1".
+// Values by full keys: "[trace]" and "seed = 1" become "trace.seed" -> "1".
 std::map<std::string, std::string> values_by_key(std::string_view identity) {
     std::map<std::string, std::string> values;
     std::map<std::string, int> arrays;
@@ -64,7 +64,7 @@ std::map<std::string, std::string> values_by_key(std::string_view identity) {
 
 } // namespace
 
-// In the comments the empty lines are left out that stand before headers in an identity (Section, image_identity()).
+// The comments leave out the empty lines that an identity has before headers (Section, image_identity()).
 std::string identity_in(std::string_view stack_text) {
     std::string identity;
     for (const std::string& line : lines_of(stack_text)) {

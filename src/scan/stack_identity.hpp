@@ -1,4 +1,4 @@
-// What the images of a stack depend on, as stack.toml has it in its comments.
+// The identity of a stack, which stack.toml holds in its comments.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,16 @@ struct StackDescription;
 
 inline constexpr std::string_view configuration_name = "stack.toml";
 
-// stack.toml: the configuration, and above it the identity as comments.
+// The text of stack.toml: the configuration, and above it the identity as comments.
 std::string stack_text(const StackDescription& description);
 
-// The identity that such a text has, as StackDescription has it; empty: it has none. Likewise the digest that it
-// states.
+// The identity in such a text, as in StackDescription, and the digest that it states; empty: there is none.
 std::string identity_in(std::string_view stack_text);
 std::string digest_in(std::string_view stack_text);
 
-// The identity of the stack in a folder, as StackDescription has it. Throws InputError if there is none.
+// The identity of the stack in a folder, as in StackDescription. Throws InputError if there is none.
 std::string stored_identity(const std::filesystem::path& folder);
-// Its digest; empty if there is none. Throws InputError if the file cannot be read.
+// The digest of the stack in a folder; empty if there is none. Throws InputError if the file cannot be read.
 std::string stored_digest(const std::filesystem::path& folder);
 
 // A line for each key in which two identities differ, "\n  trace.seed: 1 there, 2 here"; empty if they are the same.

@@ -10,9 +10,10 @@ namespace vkfv::scan {
 
 namespace {
 
-// What random numbers are drawn for; vibrations count on from the last.
+// Purposes of random numbers; vibrations use the numbers from `phase` on.
 enum Purpose : std::uint32_t { jitter, reading, lamp, moment, phase };
-// A spectrum is made of this many sines of equal power, whose sum is all but normal: its excess is -1.5 over them.
+// Number of sines of equal power that represent a spectrum; their sum is nearly normal: its excess is -1.5 over this
+// number.
 constexpr std::size_t lines_of_spectrum = 256;
 constexpr std::uint32_t of_stage = 3; // keeps these counters apart from those of paths and lattices
 
@@ -48,8 +49,8 @@ StageMotion::StageMotion(const Stage& stage, std::vector<double> positions)
     add_spectrum();
 }
 
-// Each line stands somewhere in its own part of the power, so that no two seeds have the same frequencies. Amplitudes
-// add up to the spectrum's integral.
+// Each line has a random place in its own part of the power, so that no two seeds have the same frequencies. The lines'
+// power adds up to the spectrum's integral.
 void StageMotion::add_spectrum() {
     const auto& f = stage_.vibration_frequencies;
     const auto& density = stage_.vibration_densities;
@@ -66,7 +67,7 @@ void StageMotion::add_spectrum() {
         const double wanted = a_line * (static_cast<double>(line) + draws_of(stage_.seed, 0, purpose).u1);
         const auto after = std::ranges::upper_bound(below, wanted);
         const auto k = std::min(static_cast<std::size_t>(after - below.begin()), f.size() - 1);
-        // Within a trapezium the power grows with the square: its root as one that loses no digits.
+        // Within a trapezium the power is quadratic in the frequency; this form of the root loses no digits.
         const double rest = wanted - below[k - 1];
         const double slope = (density[k] - density[k - 1]) / (f[k] - f[k - 1]);
         const double root = std::sqrt(std::max(density[k - 1] * density[k - 1] + 2 * slope * rest, 0.0));
@@ -88,7 +89,7 @@ double StageMotion::uniform(std::uint32_t image, std::uint32_t purpose) const {
     return draws_of(stage_.seed, image, purpose).u0;
 }
 
-// G. E. P. Box and M. E. Muller, Ann. Math. Statist. 29 (1958) 610.
+// A normal random number: G. E. P. Box and M. E. Muller, Ann. Math. Statist. 29 (1958) 610.
 double StageMotion::normal(std::uint32_t image, std::uint32_t purpose) const {
     const auto draws = draws_of(stage_.seed, image, purpose);
     return std::sqrt(-2 * std::log(draws.u0)) * std::cos(2 * pi * draws.u1);
@@ -97,7 +98,7 @@ double StageMotion::normal(std::uint32_t image, std::uint32_t purpose) const {
 double StageMotion::settled(double nominal, std::uint32_t image) const {
     double height = nominal;
     if (stage_.downwards && image < positions_.size()) {
-        // The topmost position is come to from below; the way back begins when the slack is taken up.
+        // The stage comes to the topmost position from below; downward motion begins when the slack is taken up.
         height = std::min(nominal + stage_.backlash, positions_.back());
     }
     return height + stage_.jitter * normal(image, Purpose::jitter);
@@ -113,7 +114,7 @@ trace::FocalPosition StageMotion::at(double nominal, std::uint32_t image, int mo
     trace::FocalPosition position((should_read - errors) / (1 + stage_.scale_error));
     double time = time_of(image);
     position.height += stage_.drift * time;
-    // Strata of the exposure, about its middle.
+    // The exposure is stratified in time about its middle.
     const int count = moments();
     if (count > 1) {
         const auto number =

@@ -46,7 +46,7 @@ class StagedTracer final : public trace::Tracer {
             });
         }
         return std::async(std::launch::deferred, [this, position, image, moments] {
-            // Numbers of their own: beyond those of all images.
+            // Further moments have image numbers of their own, beyond those of all images.
             const auto index = [&](int moment) {
                 return image + static_cast<std::uint32_t>(moment) * static_cast<std::uint32_t>(most_positions + 1);
             };

@@ -20,7 +20,7 @@ namespace vkfv::scan {
 
 namespace {
 
-// mm of a unit's name as ImageJ and OME write it; 0 where it is none of length ("pixel", "reference frame").
+// Length in mm of a unit by its name in ImageJ and OME; 0 if it is no length ("pixel", "reference frame").
 double length_of(std::string_view unit) {
     constexpr std::array<std::pair<std::string_view, double>, 20> units = {
         {{"um", 1e-3},       {"\u00b5m", 1e-3},   {"\u03bcm", 1e-3},    {"\\u00B5m", 1e-3},
@@ -35,7 +35,7 @@ double length_of(std::string_view unit) {
     return unit == "\xb5m" ? 1e-3 : 0; // the micro sign of Latin-1
 }
 
-// A finite number with a point, whatever the locale.
+// A finite number with a decimal point, whatever the locale.
 std::optional<double> number_in(std::string_view text) {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -48,7 +48,7 @@ int count_in(std::string_view text) {
     return value >= 1 && value <= 1e9 ? static_cast<int>(value) : 1;
 }
 
-// Pages that are counted along three axes, the first the fastest.
+// The pages along three axes, the first axis the fastest.
 std::vector<int> pages_of(std::string_view order, int channels, int heights, int frames) {
     std::vector<int> pages(static_cast<std::size_t>(channels) * static_cast<std::size_t>(heights) *
                            static_cast<std::size_t>(frames));
@@ -81,7 +81,7 @@ double planes_of(const StatedSeries& stated) {
                 "Save it anew as a TIFF with a page for each image: beyond 4 GB ImageJ writes one page for all.");
 }
 
-// Lines KEY=VALUE.
+// The values of lines KEY=VALUE, by key.
 std::map<std::string, std::string> lines_of(const std::string& description) {
     std::map<std::string, std::string> values;
     for (std::size_t at = 0; at < description.size();) {
@@ -100,8 +100,8 @@ double unit_length(images::ImageStatement::Unit unit) {
     return unit == Unit::inch ? 25.4 : unit == Unit::centimetre ? 10.0 : 0.0;
 }
 
-// Pixels of columns and rows to a unit of these lengths; not where the unit is an inch or centimetre as cameras and
-// programs write it for a printer, of whatever stands in the image.
+// Takes the pitch from the numbers of columns and rows in a unit of these lengths. Inches and centimetres are not used
+// if they are a resolution for printers, as cameras and programs write it for any image.
 void take_pitch(StatedSeries& stated, const images::ImageStatement& statement, double along_x, double along_y) {
     if (statement.columns_per_unit <= 0 || statement.rows_per_unit <= 0 || along_x <= 0 || along_y <= 0) {
         return;
@@ -131,7 +131,7 @@ StatedSeries by_imagej(const images::ImageStatement& statement, int pages, const
                                             stated.frames, stated.frames));
         stated.heights = std::exchange(stated.frames, 1);
     }
-    if (stated.channels == 1 && stated.frames == 1) { // a plain stack may name its images alone
+    if (stated.channels == 1 && stated.frames == 1) { // a plain stack may state its images alone
         stated.heights = std::max(stated.heights, images);
     }
     if (pages != StatedSeries::uncounted) {
@@ -145,8 +145,8 @@ StatedSeries by_imagej(const images::ImageStatement& statement, int pages, const
                : lines.contains("unit") ? length_of(lines.at("unit"))
                                         : 0;
     };
-    // Tags that have a unit are of that one, whatever the description's is; ImageJ itself writes those of a length into
-    // the description alone.
+    // A unit in the tags takes precedence over the description's; ImageJ itself writes lengths only into the
+    // description.
     const double by_tags = unit_length(statement.unit);
     const double along_x = by_tags > 0 ? by_tags : lines.contains("unit") ? unit_of("unit") : 0;
     const double along_y = by_tags > 0 ? by_tags : lines.contains("yunit") ? unit_of("yunit") : along_x;
@@ -157,7 +157,7 @@ StatedSeries by_imagej(const images::ImageStatement& statement, int pages, const
                                                      : by_tags;
         if (unit > 0 && *spacing != 0) {
             stated.z_step = *spacing * unit;
-            // The place of height 0, counted in slices from the first.
+            // The slice of height 0, counted from the first.
             const auto origin = lines.contains("zorigin") ? number_in(lines.at("zorigin")) : std::nullopt;
             stated.z_start = origin ? std::optional(-*origin * *stated.z_step + 0.0) : std::nullopt;
         } else {
@@ -174,7 +174,7 @@ std::optional<double> length_in(const pugi::xml_node& node, const std::string& n
     return value && *value != 0 && unit > 0 ? std::optional(*value * unit) : std::nullopt;
 }
 
-// Which page holds which plane, where the file says so; the order of its dimensions else.
+// The page of each plane, as the file states it, else by the order of its dimensions.
 void take_pages(const pugi::xml_node& pixels, StatedSeries& stated, int pages, const std::filesystem::path& file) {
     std::string order = pixels.attribute("DimensionOrder").as_string("XYZCT");
     order = order.size() == 5 ? order.substr(2) : "ZCT";
@@ -217,7 +217,7 @@ void take_pages(const pugi::xml_node& pixels, StatedSeries& stated, int pages, c
     }
 }
 
-// Heights of single planes count before the step that the whole states.
+// Heights of single planes take precedence over the step that the whole file states.
 void take_positions(const pugi::xml_node& pixels, StatedSeries& stated) {
     std::vector<std::optional<double>> positions(static_cast<std::size_t>(stated.heights));
     for (const pugi::xml_node plane : pixels.children("Plane")) {
@@ -235,7 +235,7 @@ void take_positions(const pugi::xml_node& pixels, StatedSeries& stated) {
     }
     const double first = *positions.front(), step = (*positions.back() - first) / (stated.heights - 1);
     if (step == 0) {
-        return; // of a stage that moved while its position was not read
+        return; // a stage that moved while its position was not read
     }
     double worst = 0;
     for (int height = 0; height < stated.heights; ++height) {
@@ -256,7 +256,7 @@ StatedSeries by_ome(const pugi::xml_node& pixels, int pages, const std::filesyst
     const auto count = [&](const char* name) { return count_in(pixels.attribute(name).as_string("1")); };
     stated.heights = count("SizeZ");
     stated.frames = count("SizeT");
-    // A channel of several samples, as of colour, is one page.
+    // A channel of several samples, such as colour, is one page.
     std::int64_t samples = 0;
     int channels = 0;
     for (const pugi::xml_node channel : pixels.children("Channel")) {

@@ -1,4 +1,4 @@
-// The statement that a file of several images makes of them: how its pages are counted, and lengths.
+// Statements of a file of several images about them: how its pages are counted, and lengths.
 #pragma once
 
 #include "images/image_file.hpp"
@@ -10,30 +10,30 @@
 
 namespace vkfv::scan {
 
-// Lengths in mm. By ImageJ's description (ij.io.TiffDecoder and FileInfo), by OME-XML (schema 2016-06), else by the
-// resolution tags of TIFF 6.0. The date is OME-XML's AcquisitionDate, else that of TIFF or Exif.
+// Lengths in mm. Sources are ImageJ's description (ij.io.TiffDecoder and FileInfo), OME-XML (schema 2016-06), or else
+// the resolution tags of TIFF 6.0. The date is OME-XML's AcquisitionDate, else that of TIFF or Exif.
 struct StatedSeries {
-    static constexpr int uncounted = 0; // pages of a file whose others are not asked for
+    static constexpr int uncounted = 0; // number of pages that is not to be checked
 
-    std::string z_by{};                         // what states the heights, if it is another
+    std::string z_by{};                         // source of the heights, if it differs from `by`
     std::string by{};                           // "ImageJ's description", ...; empty: nothing is stated
-    std::optional<double> pitch_x{}, pitch_y{}; // of the pixels on the specimen
+    std::optional<double> pitch_x{}, pitch_y{}; // pixel pitch on the specimen
     std::optional<double> z_step{};             // from one height to the next; negative: they descend
-    std::optional<double> z_start{};            // of the first
-    int channels = 1;                           // pages of each height, of other light
-    int frames = 1;                             // repetitions of all of it, at other times
+    std::optional<double> z_start{};            // height of the first image
+    int channels = 1;                           // pages of each height in different light
+    int frames = 1;                             // repetitions of all channels and heights at different times
     int heights = 0;                            // pages of one channel and frame
-    std::vector<int> pages{};                   // of (height * channels + channel) * frames + frame, in the file
-    std::vector<std::string> doubts{};          // sentences: what is stated and not used, and why
-    std::string date{};                         // when the images were taken, xsd:dateTime; empty: it is not stated
+    std::vector<int> pages{};                   // by (height * channels + channel) * frames + frame: page in the file
+    std::vector<std::string> doubts{};          // sentences: statements that are not used, and why
+    std::string date{};                         // time of the images, xsd:dateTime; empty: not stated
 
     int page(int height, int channel, int frame) const {
         return pages.at(static_cast<std::size_t>((height * channels + channel) * frames + frame));
     }
 };
 
-// Of a file with so many pages; uncounted: lengths alone. Throws InputError where the pages are not those that it
-// states.
+// The statements of a file with so many pages; uncounted: lengths alone. Throws InputError if the pages are not those
+// that it states.
 StatedSeries stated_series(const images::ImageStatement& statement, int pages, const std::filesystem::path& file);
 
 } // namespace vkfv::scan

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view ledger_name = "ledger.csv";
 constexpr std::string_view timings_header = "what,seconds,rays_per_s";
 constexpr std::string_view images_name = "images";
-constexpr std::string_view lock_name = ".lock"; // and .lock_..., of core/files/result_folder.hpp
+constexpr std::string_view lock_name = ".lock"; // .lock_... of shards too: core/files/result_folder.hpp
 
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"\n") == std::string::npos) {
@@ -49,7 +49,7 @@ std::string ledger_header(const trace::Ledger& ledger) {
     return header + ",residual_W";
 }
 
-// Numbers in their shortest form that reads back to the same bits.
+// Numbers are written in the shortest form that reads back to the same bits.
 std::string ledger_row(int image, double z, const trace::Image& exposure) {
     std::string row = fmt::format("{},{},{},{},{}", image, micrometres_text(z), exposure.rays, exposure.detected,
                                   exposure.ledger.emitted);
@@ -59,7 +59,7 @@ std::string ledger_row(int image, double z, const trace::Image& exposure) {
     return row + fmt::format(",{}", exposure.ledger.residual());
 }
 
-// The value of `key=value` on a line of its own; empty if there is none.
+// The value of `key=value` on a line of its own; empty if there is no such line.
 std::string described(const std::string& description, std::string_view key) {
     const std::string label = fmt::format("\n{}=", key);
     const auto at = description.find(label);
@@ -70,12 +70,12 @@ std::string described(const std::string& description, std::string_view key) {
     return description.substr(begin, description.find('\n', begin) - begin);
 }
 
-// In an image's description: the checksum of the whole file, taken with zeros in its place, so that pixels, directory
-// and text all stand under it and become durable with it.
+// Label in an image's description of the seal: the checksum of the whole file, computed with zeros in its place, so
+// that it covers pixels, directory and text, and becomes durable with them.
 constexpr std::string_view seal_label = "\nsha256_with_zeros_here=";
 const std::string unsealed(64, '0');
 
-// Where the seal's digits are; none: the file has no seal.
+// The place of the seal's digits; none: the file has no seal.
 std::optional<std::size_t> seal_place(std::string_view bytes) {
     const auto label = bytes.find(seal_label);
     const auto place = label + seal_label.size();
@@ -104,7 +104,7 @@ bool seal_is_whole(const std::string& bytes) {
 }
 
 struct FrameFile {
-    std::string bytes; // of the file
+    std::string bytes; // bytes of the file
     images::StoredImage image;
 };
 
@@ -243,7 +243,7 @@ Check check_images(const fs::path& folder) {
 
 namespace {
 
-// In names of files and locks; empty: of the whole stack.
+// The shard's part of the names of files and locks; empty for the whole stack.
 std::string part_name(const Shard& shard) {
     return shard.is_whole() ? "" : fmt::format("{}_of_{}", shard.index + 1, shard.count);
 }
@@ -308,7 +308,7 @@ void ImageStore::create_or_compare() {
         refuse_file(path, "", "a stack of another configuration", "the configuration of this run",
                     "Give another --out, or remove the folder. What differs:" + difference);
     }
-    // What does not touch the images, such as the evaluation, may differ.
+    // Parts of the text that do not affect the images, such as the evaluation, may differ.
     const fs::path copy = folder() / configuration_copy_name;
     if (read_file(path) != text || !fs::exists(copy, none) || read_file(copy) != text) {
         write();
@@ -329,13 +329,13 @@ void ImageStore::restore_configuration() {
 }
 
 struct ImageStore::WholeImage {
-    std::string bytes; // of the file
+    std::string bytes; // bytes of the file
     std::string ledger_header;
     std::string ledger_row;
     std::string note;
 };
 
-// Throws InputError if it is not whole, or another stack's.
+// Reads an image; throws InputError if it is damaged or belongs to another stack.
 ImageStore::WholeImage ImageStore::whole_image(const fs::path& folder, int image) const {
     FrameFile frame = read_whole_frame(folder, image, description_.positions[static_cast<std::size_t>(image)]);
     const std::string& text = frame.image.description;
@@ -408,8 +408,8 @@ void ImageStore::store(int image, const trace::Image& exposure, const Frame& fra
     const std::string header = ledger_header(exposure.ledger);
     const std::string row = ledger_row(image, z, exposure);
 
-    // The first lines are what ImageJ and Fiji take the unit and the distance of the images from. A stack of one image
-    // has no distance.
+    // ImageJ and Fiji read the unit and the distance of the images from the first lines. A stack of one image has no
+    // distance.
     std::string text = "ImageJ=1.11a\nunit=um\n";
     if (description_.positions.size() > 1) {
         text += fmt::format("spacing={:.12g}\n", (description_.positions[1] - description_.positions[0]) * um_per_mm);
@@ -427,7 +427,8 @@ void ImageStore::store(int image, const trace::Image& exposure, const Frame& fra
     ledger_rows_[index] = row;
     notes_[index] = frame.note;
     if (shard_.is_whole()) {
-        // For those who watch; a row lost here is in its image, and the next opening writes the file anew.
+        // The row is for users who watch; if it is lost, it is still in the image, and the next opening writes the file
+        // anew.
         append_line(folder() / ledger_name, (first ? header + "\n" : "") + row);
     }
     append_timing(fmt::format("image {}", image), exposure.seconds, static_cast<double>(exposure.rays));
@@ -462,7 +463,7 @@ void ImageStore::append_timing(const std::string& what, double seconds, double r
     append_timing_to(folder() / timings_name(shard_), what, seconds, rays);
 }
 
-// Those of shards, behind the stack's own.
+// Appends the timings of shards to the stack's own.
 void ImageStore::gather_timings() {
     std::vector<fs::path> parts;
     std::error_code error;

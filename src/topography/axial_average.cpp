@@ -9,7 +9,7 @@
 namespace vkfv::topography {
 namespace {
 
-// Of images first, first + 1, ...
+// Shares of the images first, first + 1, ... in a mean.
 struct Shares {
     int first = 0;
     std::vector<double> values;
@@ -44,7 +44,7 @@ double noise_variance(const Shares& shares) {
     return std::inner_product(shares.values.begin(), shares.values.end(), shares.values.begin(), 0.0);
 }
 
-// See even_shares().
+// The shares of an image's neighbours whose mean has the same noise everywhere: see even_shares().
 Shares even_shares_at(const std::vector<double>& weights, int at, int images) {
     const int radius = radius_of(weights);
     if (radius == 0) {
@@ -56,7 +56,7 @@ Shares even_shares_at(const std::vector<double>& weights, int at, int images) {
     if (at == middle) {
         return shares_at(weights, at, images);
     }
-    // The Gaussian of the weights, wider as its exponent is flatter.
+    // The Gaussian of the weights; a smaller flatness of its exponent makes it wider.
     const auto about = [&](double centre, double flatness) {
         return normalised(first, last, [&](int image) {
             return std::pow(weights[1], flatness * (image - centre) * (image - centre));
@@ -64,7 +64,7 @@ Shares even_shares_at(const std::vector<double>& weights, int at, int images) {
     };
     const double variance = noise_variance(about(middle, 1));
     double flat = 0, steep = 1;
-    constexpr int halvings = 30; // beyond the digits of a float, which the shares become
+    constexpr int halvings = 30; // more than a float's digits, to which the shares are rounded
     for (int halving = 0; halving < halvings; ++halving) {
         const double between = 0.5 * (flat + steep);
         (noise_variance(about(at, between)) < variance ? flat : steep) = between;
@@ -79,7 +79,7 @@ std::vector<Share> in_float(const Shares& exact) {
     return shares;
 }
 
-// The shares of both averages, one after the other.
+// The shares of images in a point of the curve after both averages.
 Shares twice_shares_at(const std::vector<double>& weights, int at, int images) {
     const int reach = 2 * radius_of(weights);
     const int first = std::max(0, at - reach), last = std::min(images - 1, at + reach);
@@ -124,7 +124,7 @@ std::vector<AveragedPoint> averaged_points(const std::vector<double>& weights, i
     const int reach = 2 * radius_of(weights);
     std::vector<AveragedPoint> points;
     for (int at = 0; at < images; ++at) {
-        // Where the ends are not felt, every point is like the one before it.
+        // Where no end is felt, every point has the variance of the one before it.
         if (at > reach && at < images - reach) {
             points.push_back({static_cast<double>(at), points.back().variance});
             continue;
@@ -136,7 +136,7 @@ std::vector<AveragedPoint> averaged_points(const std::vector<double>& weights, i
             point.variance += shares[image] * shares[image];
         }
         if (at == reach && at < images - reach)
-            point.position = at; // without the sum's rounding, as its neighbours
+            point.position = at; // exact, without the sum's rounding, as at its neighbours
         points.push_back(point);
     }
     return points;

@@ -12,7 +12,8 @@
 namespace vkfv::topography {
 namespace {
 
-// Another value exceeds the k-th largest of n with the probability k / (n + 1).
+// The value that a further one exceeds at this rate: the k-th largest of n is exceeded with the probability k / (n +
+// 1).
 double exceeded_at_rate(std::vector<double> values, double rate) {
     const double count = static_cast<double>(values.size());
     const auto place = static_cast<std::ptrdiff_t>(std::clamp(std::floor(rate * (count + 1)), 1.0, count)) - 1;
@@ -37,8 +38,9 @@ Evidence evidence_of(const std::vector<double>& values, const std::vector<double
     return inside ? evidence(curve, record, static_cast<int>(values.size())) : Evidence{};
 }
 
-// Unimodality has half of the rate; the order shown what is left of it by those random orders that exceed the limit of
-// unimodality: all of it where averages along z make every curve unimodal.
+// The limit that a share `rate` of random orders exceeds. Unimodality gets half of the rate; the order shown gets the
+// part that random orders above the limit of unimodality leave: all of it where averages along z make every curve
+// unimodal.
 ChanceLimit limit_of(const std::vector<Evidence>& by_chance, double rate, int images) {
     std::vector<double> unimodality, order;
     std::ranges::transform(by_chance, std::back_inserter(unimodality), &Evidence::unimodality);
@@ -55,12 +57,13 @@ ChanceLimit limit_of(const std::vector<Evidence>& by_chance, double rate, int im
     const auto orders = static_cast<double>(by_chance.size());
     limit.least.order = exceeded_at_rate(order, std::max(rate / 2, rate - above / orders));
     above += static_cast<double>(std::ranges::count_if(order, [&](double found) { return found > limit.least.order; }));
-    limit.rate = (above + 1) / (orders + 1); // the next one may be
+    limit.rate = (above + 1) / (orders + 1); // plus one, as the next order may exceed it
     return limit;
 }
 
-// Beyond the largest of n values the next one lies with the probability 1 / (n + 1), give or take as much: a few more
-// of them where the limit is near what curves of few images have.
+// Number of random orders for a limit at this rate. The next value exceeds the largest of n with the probability 1 / (n
+// + 1), with as large a relative error: some more are drawn where the limit is close to the evidence of curves of few
+// images.
 int random_orders(double rate, bool cheap, int images) {
     constexpr int many_images = 64;
     constexpr double most = 100000;
@@ -99,7 +102,7 @@ Evidence mean_evidence(const std::vector<std::vector<double>>& curves, const std
 ChanceLimit limit_of_stack(const std::vector<std::vector<double>>& curves, double rate) {
     const int images = static_cast<int>(curves.front().size());
     const double of_stacks = rate_of_stacks * rate;
-    // Unimodality and order shown have half of the rate each: that with which the largest of 2 / rate is exceeded.
+    // Unimodality and order shown get half of the rate each, at which the largest of 2 / rate values is exceeded.
     constexpr double most = 100000;
     const auto orders = static_cast<std::size_t>(std::clamp(std::ceil(2 / of_stacks), 250.0, most));
     std::vector<Evidence> by_chance(orders);

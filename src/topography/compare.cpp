@@ -14,7 +14,7 @@ namespace {
 
 using surface::HeightMap;
 
-// What is not measured in one is so in both.
+// Points that are not measured in one map become not measured in both.
 void keep_common_points(HeightMap& measured, HeightMap& truth) {
     for (std::size_t k = 0; k < measured.height.values.size(); ++k) {
         double& a = measured.height.values[k];
@@ -42,7 +42,7 @@ LevelledPair levelled_pair(HeightMap measured, HeightMap truth, const Band& band
         auto of_truth = std::async(std::launch::async, [&] { return remove_form(std::move(truth), band.form); });
         measured = remove_form(std::move(measured), band.form);
         truth = of_truth.get();
-        keep_common_points(measured, truth); // a sphere ends
+        keep_common_points(measured, truth); // the removal of a sphere leaves points beyond its edge undefined
     }
     return {.measured = filtered(std::move(measured), band),
             .truth = filtered(std::move(truth), band),
@@ -68,7 +68,7 @@ Deviation compare(const LevelledPair& treated, const HeightMap& deviation) {
     Deviation result;
     result.sq_measured = a.sq;
     result.sq_true = b.sq;
-    // Sq is taken about the mean, which belongs to the deviation where nothing was removed.
+    // Sq is taken about the mean, which is a part of the deviation where no form was removed.
     result.rms = treated.form_removed ? difference.sq : std::hypot(difference.sq, difference.mean);
     if (count == 0)
         result.correlation = std::numeric_limits<double>::quiet_NaN();
@@ -92,7 +92,7 @@ Deviation compare(const HeightMap& measured, const HeightMap& truth, const Band&
 
 HeightMap deviation_map(const LevelledPair& treated) {
     const HeightMap result = difference_of(treated.measured, treated.truth);
-    // Levelled maps differ by a levelled map; after other forms or an L-filter a rest of offset and tilt may remain.
+    // Levelled maps differ by a levelled map; after other forms or an L-filter some offset and tilt may remain.
     return treated.form_removed ? surface::remove_plane(result, surface::least_squares_plane(result)) : result;
 }
 

@@ -1,4 +1,4 @@
-// Measured against true heights.
+// Compares measured with true heights.
 #pragma once
 
 #include "surface/band.hpp"
@@ -7,44 +7,44 @@
 
 namespace vkfv::topography {
 
-using surface::Band; // what is compared of both surfaces
+using surface::Band; // form and filters that both surfaces are compared after
 
-// Statistics of measured against true over the points present in both, after the same form removal and filters of both.
-// Lengths in mm; NaN where no point is present.
+// Statistics of measured against true heights over the points present in both, after the same form removal and filters
+// of both. Lengths in mm; NaN where no point is present.
 struct Deviation {
     double sq_measured = 0;
     double sq_true = 0;
-    double rms = 0;            // of the difference, offset and tilt removed; with the form "none" about zero, as it is
-    double correlation = 0;    // Pearson; 0 where either is flat
-    double measured_share = 0; // points present in both, of all points
-    // The least-squares line of measured on true heights, measured = offset + slope * true: what the instrument
-    // amplifies heights by, and its zero. After levelling the offset is 0. NaN where the true heights are flat.
+    double rms = 0;            // RMS difference, offset and tilt removed; with the form "none" about zero, unchanged
+    double correlation = 0;    // Pearson's coefficient; 0 where either is flat
+    double measured_share = 0; // points present in both, as a share of all points
+    // The least-squares line of measured on true heights, measured = offset + slope * true: the instrument's
+    // amplification of heights, and its zero. After levelling the offset is 0. NaN where the true heights are flat.
     double slope = std::numeric_limits<double>::quiet_NaN();
     double offset = std::numeric_limits<double>::quiet_NaN();
 };
 
-// measured / truth; NaN where the truth is 0, as the Sq of a flat is: there is no ratio then.
+// The ratio measured / truth; NaN where the truth is 0, as the Sq of a flat is.
 double ratio_to_truth(double measured, double truth);
 
-// The treatment itself: what is not measured in one is so in both; the form of each is removed (unless told otherwise,
-// its least-squares plane), then the filters are applied. With the form "truth" nothing is taken off the truth, and off
-// the measured heights the least-squares plane of their deviation from it: no step or slope of the truth's is lost.
+// Both maps prepared for comparison: points not measured in one are not measured in both; the form of each is removed
+// (by default its least-squares plane), then the filters are applied. With the form "truth" the truth is unchanged, and
+// the measured heights lose the least-squares plane of their deviation from it: no step or slope of the truth is lost.
 struct LevelledPair {
     surface::HeightMap measured;
     surface::HeightMap truth;
-    bool form_removed = true; // not with the form "none"
+    bool form_removed = true; // false with the form "none"
 };
 
-// Both maps stand on the same grid (surface/resample.hpp brings them there): std::invalid_argument otherwise, here and
-// below.
+// Prepares both maps, which stand on the same grid (surface/resample.hpp resamples them): std::invalid_argument
+// otherwise, here and below.
 LevelledPair levelled_pair(surface::HeightMap measured, surface::HeightMap truth, const Band& band = {});
 
-// deviation: of deviation_map().
+// The statistics of a prepared pair. deviation: of deviation_map().
 Deviation compare(const LevelledPair& treated, const surface::HeightMap& deviation);
 Deviation compare(const LevelledPair& treated);
 Deviation compare(const surface::HeightMap& measured, const surface::HeightMap& truth, const Band& band = {});
 
-// Measured less true after the treatment of compare(); its root mean square is Deviation::rms.
+// Measured minus true height after the preparation of compare(); its root mean square is Deviation::rms.
 surface::HeightMap deviation_map(const LevelledPair& treated);
 surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth,
                                  const Band& band = {});
@@ -58,8 +58,9 @@ struct ComparedPair {
 };
 ComparedPair compared_pair(surface::HeightMap measured, surface::HeightMap truth, const Band& band = {});
 
-// Of the deviation's finite points, the share further from zero than coverage_factor times their standard uncertainty
-// (mm, on the same grid: std::invalid_argument otherwise; a point without one counts as beyond); NaN where none is.
+// The share of the deviation's finite points that are further from zero than coverage_factor times their standard
+// uncertainty (mm, on the same grid: std::invalid_argument otherwise; a point without one counts as beyond); NaN if
+// there are no such points.
 double share_beyond(const surface::HeightMap& deviation, const Grid<double>& uncertainty, double coverage_factor);
 
 } // namespace vkfv::topography

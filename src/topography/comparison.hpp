@@ -1,4 +1,4 @@
-// One measurement or repeated ones against the truth: all that is said of it.
+// The comparison of one measurement, or of repeated ones, with the truth.
 #pragma once
 
 #include "surface/areal_parameters.hpp"
@@ -14,9 +14,10 @@
 
 namespace vkfv::topography {
 
-// One measurement, over the points present in it and in the truth, both treated alike (levelled_pair()).
+// The comparison of one measurement, over the points present in it and in the truth, both treated alike
+// (levelled_pair()).
 struct MeasurementComparison {
-    LateralShift shift; // as found, removed or not
+    LateralShift shift; // as found, whether removed or not
     Deviation deviation;
     surface::ArealParameters measured;
     surface::ArealParameters truth;
@@ -24,17 +25,18 @@ struct MeasurementComparison {
 
 struct Comparison {
     std::vector<MeasurementComparison> measurements;
-    LateralShift removed_shift;               // their mean shift, if it was to be removed; otherwise 0
-    surface::HeightMap truth;                 // under the measurements, on their grid, untreated
-    surface::HeightMap deviation;             // of the measurement; of repeated ones their mean (repeatability.hpp)
-    std::optional<SystematicAndRandom> parts; // of two measurements or more
-    // Of the deviation after levelling alone, whatever the band: a filter or form would hide what they show.
+    LateralShift removed_shift;               // mean shift of the measurements, if it was to be removed; otherwise 0
+    surface::HeightMap truth;                 // at the measurements' points, on their grid, untreated
+    surface::HeightMap deviation;             // of repeated measurements their mean (repeatability.hpp)
+    std::optional<SystematicAndRandom> parts; // for two measurements or more
+    // The following are of the deviation after levelling alone, whatever the band: a filter or form would hide their
+    // effects.
     std::vector<TransferBand> transfer; // from `truth` to truth + deviation
     std::vector<SlopeBin> slopes;       // in bins of two degrees
 };
 
-// All measurements stand on one grid (std::invalid_argument otherwise), the truth on any. `align` moves the truth by
-// the mean of the shifts found; a measurement without one does not count there. The shift is that of the levelled
+// Compares measurements on one grid (std::invalid_argument otherwise) with a truth on any grid. `align` moves the truth
+// by the mean of the shifts found; a measurement without one does not count there. The shift is that of the levelled
 // surfaces, whatever the band.
 Comparison compare_with_truth(std::span<const surface::HeightMap> measurements, const surface::HeightMap& truth,
                               bool align, const Band& band = {});

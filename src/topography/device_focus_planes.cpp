@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint32_t workgroup = 128;
 constexpr std::size_t images_a_gathered_buffer = 64;
-constexpr std::size_t least_carrier_bytes = 1 << 16; // records go by them too
+constexpr std::size_t least_carrier_bytes = 1 << 16; // records are copied by the carriers too
 constexpr int records_a_thread = 1 << 12;
 
 using namespace focus::f32; // bindings and push constants: shaders/focus/interface.glsl
@@ -40,7 +40,7 @@ std::vector<vulkan::BindingDeclaration> storage_buffers(std::initializer_list<st
     return all;
 }
 
-// With those of planes.glsl.
+// Bindings of the given slots and of the planes of planes.glsl.
 std::vector<vulkan::BindingDeclaration> with_planes(std::initializer_list<std::uint32_t> slots) {
     auto all = storage_buffers(slots);
     for (std::uint32_t plane = 0; plane < MOST_PLANES; ++plane) {
@@ -49,7 +49,7 @@ std::vector<vulkan::BindingDeclaration> with_planes(std::initializer_list<std::u
     return all;
 }
 
-// planes: MOST_PLANES at most; slots without one see the first again.
+// The given bindings with those of planes, MOST_PLANES at most; slots without a plane are bound to the first one.
 std::vector<vulkan::Binding> with_planes(std::vector<vulkan::Binding> others,
                                          std::span<const vulkan::Buffer* const> planes) {
     for (std::uint32_t plane = 0; plane < MOST_PLANES; ++plane) {
@@ -116,7 +116,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
 
     void take(int image, Channels channels) override {
         submit();
-        // The one that carried the image before the last has been read.
+        // The carrier that is written now held the image before the last, which the device has read.
         vulkan::Buffer& carrier = carriers_[static_cast<std::size_t>(image) % carriers_.size()];
         for (std::size_t channel = 0; channel < channels.size(); ++channel) {
             carrier.write_values(std::span<const float>(channels[channel].values), channel * pixels_);
@@ -224,7 +224,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
         return result;
     }
 
-    // Block by block through the carriers, so that no host memory for the records of all pixels has to be made.
+    // Records are copied block by block through the carriers, so that the host needs no memory for all pixels' records.
     void visit_records(const RecordTask& task) override {
         const std::size_t block = carriers_[0].bytes() / std::max(sizeof(CurveRecord), sizeof(SingleRecord));
         for (std::size_t first = 0; first < pixels_; first += block) {
@@ -247,7 +247,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
     vulkan::Buffer& image_at(int k) { return images_[static_cast<std::size_t>(k) % images_.size()]; }
     vulkan::Buffer& curve_at(int k) { return curves_[static_cast<std::size_t>(k) % curves_.size()]; }
     vulkan::Buffer& squares_at(int k) { return squares_[static_cast<std::size_t>(k) % squares_.size()]; }
-    // Where an averaged curve's values at the image begin.
+    // Index at which an averaged curve's values at the image begin.
     std::size_t place_of(int image) const { return static_cast<std::size_t>(image % averaged_curves_) * pixels_; }
 
     template <class Push>
@@ -278,7 +278,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
         measure(mean_image_, curve);
     }
 
-    // first_to: in values.
+    // Records a weighted mean of planes. first_to: index of its first value in `to`.
     template <class Plane>
     void weighted_mean(std::span<const Share> shares, const Plane& plane, const vulkan::Buffer& to,
                        std::size_t first_to, std::size_t count) {
@@ -297,7 +297,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
         }
     }
 
-    // Those recorded since the last image.
+    // The commands recorded since the last image.
     vulkan::Commands& commands() {
         if (!commands_) {
             commands_ = std::make_unique<vulkan::Commands>(device_, 0, vulkan::Device::Lane::evaluation);
@@ -305,7 +305,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
         return *commands_;
     }
 
-    // Them, once those before have been done.
+    // Submits the recorded commands once the commands before have been done.
     void submit() {
         if (submitted_) {
             submitted_->wait();
@@ -326,14 +326,14 @@ class DeviceFocusPlanes final : public FocusPlanes {
     vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, single_, follow_, gather_, select_;
     vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, joint_, joint_curve_, single_curve_, alone_,
         records_, singles_, places_, brightness_, all_in_focus_;
-    std::size_t gathered_count_; // pixels
+    std::size_t gathered_count_; // number of pixels
     vulkan::Buffer gathered_pixels_;
     std::deque<vulkan::Buffer> gathered_; // in host memory
     std::size_t gathered_images_ = 0;
-    std::vector<vulkan::Buffer> images_;   // the last few in turn
-    std::vector<vulkan::Buffer> curves_;   // likewise
-    std::vector<vulkan::Buffer> squares_;  // of single images' curves, likewise
-    std::vector<vulkan::Buffer> carriers_; // in host memory, in turn
+    std::vector<vulkan::Buffer> images_;   // last few images, in turn
+    std::vector<vulkan::Buffer> curves_;   // last few curves' values, in turn
+    std::vector<vulkan::Buffer> squares_;  // last few squares of single images' curves, in turn
+    std::vector<vulkan::Buffer> carriers_; // in host memory, used in turn
     std::unique_ptr<vulkan::Commands> commands_;
     std::unique_ptr<vulkan::Commands> submitted_;
 };

@@ -1,5 +1,5 @@
-// The work on a stack on a Vulkan device, in float: each image is handed over once, and only what is left of all of
-// them comes back. The algorithm is shaders/focus/'s.
+// The evaluation of a stack on a Vulkan device, in float: each image is handed over once, and only the summary comes
+// back. The algorithm is that of shaders/focus/.
 #pragma once
 
 #include "topography/focus_planes.hpp"
@@ -12,7 +12,7 @@ class Device;
 
 namespace vkfv::topography {
 
-// Beside what else the device does. The maker throws DeviceError.
+// The device may do other work meanwhile. The maker throws DeviceError.
 FocusPlanesMaker device_focus_planes(std::shared_ptr<const vulkan::Device> device);
 
 } // namespace vkfv::topography

@@ -21,7 +21,8 @@ FlatnessCorrected correct_flatness(surface::HeightMap measured, const surface::H
         throw std::invalid_argument("correct_flatness: both height maps must stand on the same grid");
     const surface::Polynomial deviation = surface::least_squares_polynomial(flat, flatness_degree);
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-    // By the flat's positions: the instrument's field is the same, whatever origin a file gives it.
+    // The deviation is taken at the flat's positions: the instrument's field is the same, whatever origin a file gives
+    // it.
     for (int row = 0; row < measured.rows(); ++row)
         for (int column = 0; column < measured.columns(); ++column) {
             double& height = measured.height(column, row);

@@ -43,7 +43,7 @@ CurveFit fit_of(PeakMethod method, const std::vector<double>& curve, int at, int
     if (reach < 1 || !(fit.largest > 0) || method == PeakMethod::centre_of_gravity) {
         return fit;
     }
-    // Through three points least squares are exact, whatever their weights.
+    // Least squares through three points are exact, whatever the weights.
     const auto parabola = f64::fit_parabola(ValuesScene{curve}, at, reach, fit.gaussian);
     fit.range = reach;
     fit.coefficients = {parabola.level - parabola.slope * parabola.middle_1 +

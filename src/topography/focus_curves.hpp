@@ -1,4 +1,4 @@
-// Focus curves of some pixels on a regular grid, kept whole: for people, who want to see why a height is what it is.
+// Focus curves of some pixels on a regular grid, kept whole so that users can see how a height was found.
 #pragma once
 
 #include "topography/focus_planes.hpp"
@@ -10,19 +10,20 @@
 
 namespace vkfv::topography {
 
-// Which curves are kept: of so many pixels along x and y, or of all pixels where an image has fewer. 4 bytes a value.
+// The grid of pixels whose curves are kept: so many along x and y, or all pixels where an image has fewer. 4 bytes a
+// value.
 struct CurveGrid {
     int columns = 0; // 0: none are kept
     int rows = 0;
-    int every = 1; // images: the curves' values at these
+    int every = 1; // images; values at every so many images are kept
 
-    // The pixels, evenly spread: number k of n stands at floor((2 k + 1) pixels / (2 n)).
+    // The columns and rows of the pixels, evenly spread: number k of n stands at floor((2 k + 1) pixels / (2 n)).
     std::vector<int> columns_of(int image_columns) const;
     std::vector<int> rows_of(int image_rows) const;
 };
 
-// What the maximum was found by, over images at - range ... at + range: with x in images from `at`,
-// largest * f(c0 + c1 x + c2 x^2), where f is exp for a Gaussian and 1 + ... for a parabola.
+// The fit by which the maximum was found, over images at - range ... at + range: with x in images from `at`, largest *
+// f(c0 + c1 x + c2 x^2), where f is exp for a Gaussian and 1 + ... for a parabola.
 struct CurveFit {
     int at = 0;
     int range = 0; // 0: nothing was fitted
@@ -32,17 +33,17 @@ struct CurveFit {
 };
 
 struct FocusCurves {
-    std::vector<int> columns; // of the image, for each of the grid
+    std::vector<int> columns; // columns of the image, for each of the grid
     std::vector<int> rows;
-    std::vector<double> z{};      // mm, heights that the curves' values stand for
+    std::vector<double> z{};      // mm, heights of the curves' values
     std::vector<float> values{};  // after both averages; [(row * columns + column) * heights + height]
-    std::vector<double> peaks{};  // mm, of each curve, by the method of the evaluation; NaN: none
-    std::vector<CurveFit> fits{}; // of each curve; range 0 where not every image's value is kept
+    std::vector<double> peaks{};  // mm, maximum of each curve by the method of the evaluation; NaN: none
+    std::vector<CurveFit> fits{}; // fit of each curve; range 0 where not every image's value is kept
 
     std::size_t index(std::size_t column, std::size_t row) const { return row * columns.size() + column; }
 };
 
-// curve: its values at all images; at: the image of the largest; range: of the evaluation.
+// The fit of a curve. curve: its values at all images; at: the image of the largest; range: of the evaluation.
 CurveFit fit_of(PeakMethod method, const std::vector<double>& curve, int at, int range);
 
 } // namespace vkfv::topography

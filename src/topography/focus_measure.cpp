@@ -12,7 +12,7 @@ namespace {
 namespace f64 = focus::f64;
 using f64::Arithmetic;
 
-// Both at once, computed where they are asked for: of few pixels.
+// A scene for a few pixels: responses and sums along rows are computed when they are read.
 struct PixelScene {
     const Channels& image;
     const f64::FocusPlan& plan;

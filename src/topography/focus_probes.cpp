@@ -14,7 +14,7 @@
 namespace vkfv::topography {
 namespace {
 
-constexpr int reach = 2; // of the measures' masks beyond the window
+constexpr int reach = 2; // pixels by which the measures' masks reach beyond the window
 constexpr std::size_t most_values = std::size_t{1} << 25;
 
 using SharesAt = std::vector<Share> (*)(const std::vector<double>& weights, int at, int images);
@@ -40,7 +40,8 @@ std::vector<double> averaged(const std::vector<double>& values, const std::vecto
     return result;
 }
 
-// Evenly over a side, each with its window and the masks' reach inside the image where it is large enough.
+// Middles of probes, evenly over a side, each with its window and the masks' reach inside the image where it is large
+// enough.
 std::vector<int> middles(int count, int margin, int most) {
     const int first = std::min(margin, (count - 1) / 2), last = std::max(count - 1 - margin, count / 2);
     const int places = std::min(most, last - first + 1);
@@ -51,7 +52,7 @@ std::vector<int> middles(int count, int margin, int most) {
     return result;
 }
 
-// Line through points (x, y), least squares, neither coefficient negative.
+// The least-squares line through points (x, y) with neither coefficient negative.
 NoiseModel fitted(const std::vector<double>& x, const std::vector<double>& y) {
     const auto count = static_cast<double>(x.size());
     const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / count;
@@ -185,7 +186,7 @@ double FocusProbes::single_of(const Probe& probe, std::size_t image) const {
     return focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row);
 }
 
-// As images come rather than at the end, which all wait for.
+// Single images are followed as they come, not at the end, for which all threads wait.
 void FocusProbes::follow_singles() {
     const auto follow = [&](int k) {
         Probe& probe = probes_[static_cast<std::size_t>(k)];
@@ -247,12 +248,12 @@ double FocusProbes::curve_width() const {
     for (const Probe& probe : probes_) {
         const std::vector<double>& values = probe.singles;
         const double variance = variance_of(values);
-        // Noise alone says nothing of a width, but there is much of it.
+        // Noise alone shows no width but has a large variance, so curves count by their order over it.
         const double weight = variance > 0 ? neighbours_alike(values) / variance : 0;
         for (int lag = 1; weight > 0 && lag <= lags; ++lag) {
             double sum = 0;
             for (int k = 0; k < images_; ++k) {
-                // On from the last image to the first: noise and peak have as many pairs at every lag.
+                // The pairs go on from the last image to the first: noise and peak have as many pairs at every lag.
                 const auto later = static_cast<std::size_t>((k + lag) % images_);
                 const double step = values[later] - values[static_cast<std::size_t>(k)];
                 sum += step * step;
@@ -260,7 +261,7 @@ double FocusProbes::curve_width() const {
             structure[static_cast<std::size_t>(lag - 1)] += weight * sum / images_;
         }
     }
-    // Noise and rise follow by linear least squares for every width; the width is tried.
+    // The width is found by trial; noise and rise follow by linear least squares for every width.
     double best = 0, least = std::numeric_limits<double>::infinity();
     constexpr double finest = 0.3, ratio = 1.05;
     for (double width = finest; width < images_; width *= ratio) {
@@ -344,7 +345,7 @@ FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_
             }
         }
         all += count;
-        constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
+        constexpr double gain = 1 + 4 + 1; // factor of the second difference on the variance of independent values
         // An image with few unsaturated pixels has an uncertain variance, and the smallest ones are used.
         const bool enough = 2 * count >= pixels;
         found.variances.push_back(enough ? sum / static_cast<double>(count) / gain
@@ -355,7 +356,7 @@ FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_
     }
     const auto count = static_cast<double>(found.variances.size());
     found.level /= static_cast<double>(std::max<std::size_t>(1, all));
-    // Of images that are mostly dark, the quarter that saw no light says nothing.
+    // If images are mostly dark, the quarter that saw no light is no measure of the noise.
     const auto dark = std::ranges::count(probe.values, 0.0f);
     found.sparse = static_cast<std::size_t>(dark) > probe.values.size() / 2;
     found.variance = found.sparse ? std::accumulate(found.variances.begin(), found.variances.end(), 0.0) / count
@@ -413,7 +414,7 @@ NoiseCorrelation FocusProbes::noise_correlation() const {
         of_patches[patch] = products_of(probes_[patch / channels], patch % channels, scale);
     });
     constexpr int reach = NoiseCorrelation::reach;
-    // Of pairs (dx, dy) apart: mean products over each patch's variance, with the number of pairs in all patches.
+    // Mean products of pairs (dx, dy) apart over each patch's variance, with the number of pairs in all patches.
     Grid<double> products(2 * reach + 1, reach + 1), pairs = products;
     double patches = 0;
     for (std::size_t patch = 0; patch < of_patches.size(); ++patch) {
@@ -432,8 +433,8 @@ NoiseCorrelation FocusProbes::noise_correlation() const {
             }
         }
     }
-    // Patches of small images overlap; and differences of images that follow each other are alike in part, which
-    // doubles the products' variance at most.
+    // Patches of small images overlap, and differences of consecutive images are partly correlated, which doubles the
+    // products' variance at most.
     const double most_pairs = static_cast<double>(pixels_) * channels_ * images_ / 4.0;
     for (int dy = 0; dy <= reach; ++dy) {
         for (int dx = dy == 0 ? 1 : -reach; dx <= reach; ++dx) {
@@ -450,7 +451,7 @@ NoiseCorrelation FocusProbes::noise_correlation() const {
 
 std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_weights, double rate) const {
     const Means means = means_of(axial_weights, images_);
-    const bool alone = axial_weights.size() == 1; // an image's own value, in whatever order
+    const bool alone = axial_weights.size() == 1; // an image's own value, in any order
     std::vector<Evidence> result(static_cast<std::size_t>(random_orders(rate, alone, images_)));
     parallel_items(static_cast<int>(result.size()), [&](int sample) {
         const auto probe = static_cast<std::size_t>(sample) % probes_.size();
@@ -486,7 +487,7 @@ Channels FocusProbes::noise_patch(const Probe& probe, int image, double contrast
     };
     fill(little / largest);
     const double found = focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row);
-    // Images without noise have differences that are texture, and a window may hold hardly any of it.
+    // In images without noise the differences are texture, of which a window may hold hardly any.
     if (!(found > 0) || little * contrast / found > most) {
         return {};
     }
@@ -498,7 +499,7 @@ IndependentImages FocusProbes::independent_images(const std::vector<double>& nei
                                                   bool curves_averaged) const {
     constexpr std::size_t least_probes = 9;
     constexpr double contrast = 1e-3; // see noise_patch()
-    constexpr int samples = 600;      // for the standard deviation to a thirtieth
+    constexpr int samples = 600;      // for a standard deviation known to a thirtieth
     if (images_ < 3 || probes_.size() < least_probes) {
         return {};
     }
@@ -573,7 +574,7 @@ IndependentImages FocusProbes::independent_images(const std::vector<double>& nei
 }
 
 double FocusProbes::measure_of_rounding(double brightness) const {
-    // So many values show the step between a camera's grey values. Floats have hardly any step.
+    // With so many values the step between a camera's grey values shows. Floats have hardly any step.
     constexpr std::size_t most = 4096;
     std::vector<float> values;
     for (const Probe& probe : probes_) {
@@ -645,7 +646,7 @@ bool FocusProbes::reappears(const std::vector<PlaceOfImages>& places) const {
 
 std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
                                                                  bool curves_averaged) const {
-    constexpr double least_rise = 8; // of the measure over its quiet values, along z
+    constexpr double least_rise = 8; // rise of the measure along z, over its quiet value
     constexpr double persistent = 0.25;
     constexpr double least_share = 0.02;
     const double mean = [&] {
@@ -662,7 +663,7 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
         means.curve = all_shares(axial_shares, {1}, images_);
     }
     std::vector<double> shares(probes_.size(), std::numeric_limits<double>::quiet_NaN());
-    std::vector<std::optional<PlaceOfImages>> wide(probes_.size()); // strong in a neighbouring image too
+    std::vector<std::optional<PlaceOfImages>> wide(probes_.size()); // where a neighbouring image has strong texture too
     parallel_items(static_cast<int>(probes_.size()), [&](int k) {
         const Probe& probe = probes_[static_cast<std::size_t>(k)];
         const std::vector<double>& singles = probe.singles;
@@ -691,7 +692,7 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
             not_persistent.push_back(*place);
         }
     }
-    if (!reappears(not_persistent)) { // it is noise, of which strength says nothing
+    if (!reappears(not_persistent)) { // a pattern that does not reappear is noise, whose strength is no evidence
         for (std::size_t k = 0; k < shares.size(); ++k) {
             shares[k] = wide[k] ? std::numeric_limits<double>::quiet_NaN() : shares[k];
         }
@@ -706,14 +707,14 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
 }
 
 double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, double most_rival) const {
-    // The floor of noise must not pass for a maximum at either end.
+    // The noise floor must not be taken for a maximum at either end.
     const auto curves = curves_in_order({.images = all_shares(even_shares, axial_weights, images_),
                                          .curve = all_shares(axial_shares, axial_weights, images_)});
-    // Of the averaged noise over a single image's, and how many values of it are independent.
+    // Variance of the averaged noise over a single image's, and the number of its independent values.
     const double variance = averaged_points(axial_weights, images_)[static_cast<std::size_t>(images_ / 2)].variance;
     const double independent = std::max(2.0, images_ * variance);
-    // Twice the range of that many normal values: where noise exceeds texture the measure is not linear, and averages
-    // leave up to twice as much.
+    // The limit is twice the range of that many normal values: where noise exceeds texture the measure is not linear,
+    // and averages leave up to twice as much.
     const double by_noise = 4 * std::sqrt(2 * std::log(independent) * variance);
     int rivalled = 0;
     for (std::size_t probe = 0; probe < curves.size(); ++probe) {
@@ -735,7 +736,7 @@ double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, d
 }
 
 std::vector<std::vector<double>> FocusProbes::some_curves() const {
-    constexpr std::size_t every = 7; // in another column each row
+    constexpr std::size_t every = 7; // shifts the column from row to row
     std::vector<std::vector<double>> curves;
     for (std::size_t k = 0; k < probes_.size(); k += every) {
         curves.push_back(probes_[k].singles);
@@ -755,7 +756,7 @@ double FocusProbes::distance_from_the_ends(double share_nearer) const {
         const std::vector<double> curve = averaged(probe.singles, means);
         const auto at = static_cast<int>(std::ranges::max_element(curve) - curve.begin());
         const int distance = std::min(at, images_ - 1 - at);
-        // A maximum at an end is not in the scan, however little is averaged.
+        // A maximum at an end is outside the scan, however little is averaged.
         if (distance > 0) {
             const double form = neighbours_alike(probe.singles);
             places.push_back({static_cast<double>(distance), form * form});
@@ -777,8 +778,8 @@ double FocusProbes::suitable_smoothing() const {
     if (images_ <= few_images) {
         return 0;
     }
-    // Both averages of this standard deviation bring Gaussian curves nearer than 1.6 of it to the end itself, whatever
-    // their width.
+    // Both averages of this standard deviation move Gaussian curves nearer than 1.6 times it to the end itself,
+    // whatever their width.
     constexpr double least_distance = 2, share_nearer = 0.05;
     return std::min(topography::suitable_smoothing(curve_width(), images_),
                     std::max(least_smoothing, distance_from_the_ends(share_nearer) / least_distance));
@@ -803,8 +804,8 @@ void FocusProbes::measure_by(FocusMeasure measure) {
 }
 
 void FocusProbes::settle(TopographyOptions& options) {
-    // Noise alone then scatters heights by a hundredth of the curves' standard deviation, about as much as the place of
-    // texture does on a gentle slope (docs/topography.md).
+    // At this share noise alone scatters heights by a hundredth of the curves' standard deviation, about as much as the
+    // place of texture does on a gentle slope (docs/topography.md).
     constexpr double most_noise = 1e-3;
     if (!options.focus_measure) {
         const bool averaged = options.smoothing_steps.value_or(suitable_smoothing()) > 0;

@@ -1,4 +1,4 @@
-// Records of the evaluation between double, in which a stack is judged, and float.
+// Converts records of the evaluation between float and double, in which a stack is judged.
 #pragma once
 
 #include "focus/focus.hpp"

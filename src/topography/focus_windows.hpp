@@ -1,5 +1,5 @@
-// The windows of a focus measure over a whole image, in the arithmetic asked for: focus::f64::Arithmetic, or
-// focus::f32::Arithmetic, which gives a device's bits.
+// The windows of a focus measure over a whole image, in focus::f64::Arithmetic or focus::f32::Arithmetic, which gives a
+// device's bits.
 #pragma once
 
 #include "core/threads/parallel_rows.hpp"
@@ -15,7 +15,8 @@ struct ImageScene {
     }
 };
 
-// The standard deviation gathers the channels; all other measures their mean and the response.
+// The source of the windows for the standard deviation are the channels; for all other measures, their mean and the
+// response.
 template <class Arithmetic>
 struct ChannelSource {
     const Channels& image;
@@ -66,7 +67,7 @@ std::vector<Grid<typename Arithmetic::Sums>> along_rows(const typename Arithmeti
     return fields;
 }
 
-// weights: of the window, window_weight()'s.
+// The focus measure at every pixel. weights: of the window, as window_weight() gives them.
 template <class Arithmetic>
 Grid<float> focus_values(const Channels& image, const typename Arithmetic::Plan& plan,
                          const std::vector<typename Arithmetic::Real>& weights) {

@@ -63,12 +63,12 @@ std::vector<TransferBand> height_transfer(const surface::HeightMap& measured, co
             annuli[annulus].frequencies += 1;
         }
 
-    // Opposite frequencies say the same; zeros appended and the window, 1.5 lines wide along either axis, say nothing
-    // new.
+    // The number of independent frequencies: opposite ones are conjugate, and appended zeros and the window, 1.5 lines
+    // wide along either axis, add no independent ones.
     const double independent = static_cast<double>(columns) * rows / static_cast<double>(grid.values.size()) / 2 / 2.25;
     const double density = measured.pitch_x * measured.pitch_y / window_power;
     std::vector<TransferBand> bands;
-    // The window spreads the mean and what tilt is left over two lines.
+    // The first two annuli are left out, as the window spreads the mean and the remaining tilt over two lines.
     for (std::size_t k = 2; k < annuli.size(); ++k) {
         const Annulus& annulus = annuli[k];
         if (!(annulus.measured > 0 && annulus.truth > 0))

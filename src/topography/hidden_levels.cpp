@@ -18,16 +18,16 @@ namespace {
 
 constexpr std::size_t neighbours = 9;
 
-// Levels 0.6 depths of focus apart have 0.14 and more in the median, spherical aberration of 0.1 wave has 0.05.
+// Levels 0.6 depths of focus apart have a share of 0.14 and more in the median, spherical aberration of 0.1 wave has
+// 0.05.
 constexpr double least_share = 0.08;
 
-// The variance of height that a window of this radius holds because the map slopes there, by the plane that fits the
-// heights within twice the radius: the map shows it, so it is not hidden. Heights that jump between two levels have no
-// slope.
+// The variance of height within a window of this radius by the map's slope, from the plane that fits the heights within
+// twice the radius: the map shows it, so it is not hidden. Heights that jump between two levels have no slope.
 double variance_by_slope(const Grid<double>& height, const LevelsAtPlace& place, int radius) {
     const int reach = 2 * radius;
     PlaneMoments around;
-    double first = std::numeric_limits<double>::quiet_NaN(); // which the sums of squares are about
+    double first = std::numeric_limits<double>::quiet_NaN(); // height from which the sums of squares count
     for (int row = std::max(0, place.row - reach); row <= std::min(height.rows - 1, place.row + reach); ++row) {
         for (int column = std::max(0, place.column - reach);
              column <= std::min(height.columns - 1, place.column + reach); ++column) {
@@ -59,8 +59,8 @@ double squared_distance(const LevelsAtPlace& place, double column, double row) {
     return std::pow(place.column - column, 2) + std::pow(place.row - row, 2);
 }
 
-// The mean variance of levels over the places nearest to `middle`, in the unit of the heights squared; 0 where they do
-// not agree that there are several levels, since a single place is often wrong.
+// The mean variance of levels over the places nearest to `middle`, in the unit of the heights squared; 0 unless they
+// agree that there are several levels, since a single place is often wrong.
 double variance_around(std::span<const LevelsAtPlace> places, const LevelsAtPlace& middle) {
     std::vector<LevelsAtPlace> near(places.begin(), places.end());
     const auto count = std::min(neighbours, near.size());
@@ -181,12 +181,12 @@ std::vector<LevelsAtPlace> FocusProbes::levels(const std::vector<double>& axial_
             with_noise += (responses.product(pair.one, pair.one) + responses.product(pair.other, pair.other)) /
                           static_cast<double>(2 * middle.size());
         }
-        // Where noise is stronger, what is left of the curve would be chosen by chance.
+        // Where noise is stronger, the rest of the curve would be chosen by chance.
         constexpr double least_share_of_texture = 2.0 / 3;
         if (middle.empty() || !(energy(middle) > least_share_of_texture * with_noise)) {
             return std::nullopt;
         }
-        // The sums are over d, the first with half its weight, until little of the curve is left.
+        // The sums over d, the first with half its weight, end where little of the curve is left.
         constexpr double least_energy = 0.2;
         const double whole = energy(middle);
         double weight = 0.5 * whole, squares = 0, single_weight = weight, single_squares = 0;
@@ -208,8 +208,8 @@ std::vector<LevelsAtPlace> FocusProbes::levels(const std::vector<double>& axial_
         if (!(squares > 0) || !(single_weight > 0)) {
             return std::nullopt;
         }
-        // The maximum lies between images: E is wider by the square of its distance from the image that both are
-        // about.
+        // The maximum lies between images: E is wider by the squared distance of the maximum from the image about which
+        // E and P are taken.
         const double offset =
             (smooth[top + 1] - smooth[top - 1]) / (2 * (2 * smooth[top] - smooth[top - 1] - smooth[top + 1]));
         const double single = std::max(0.0, single_squares / single_weight);

@@ -9,7 +9,7 @@
 namespace vkfv::topography {
 namespace {
 
-// The last few of a series.
+// Keeps the last few items of a series.
 template <class Item>
 class Ring {
   public:
@@ -153,7 +153,7 @@ class HostFocusPlanes final : public FocusPlanes {
     Ring<Grid<float>> curves_;
     Ring<Grid<float>> averaged_;
     bool images_averaged_;
-    Ring<Grid<float>> squares_; // of single images' curves
+    Ring<Grid<float>> squares_; // squares of single images' curves
     Ring<Grid<float>> joint_;   // empty if images are averaged
     Ring<Grid<float>> alone_;
     StackSummary summary_;

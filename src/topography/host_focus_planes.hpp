@@ -5,11 +5,11 @@
 
 namespace vkfv::topography {
 
-// In float, to the bits of a device (shaders/focus/arithmetic.glsl), unless values lie within 2^-100 of zero: devices
-// may drop what lies below float's normal numbers.
+// The evaluation in float, to the bits of a device (shaders/focus/arithmetic.glsl), unless values lie within 2^-100 of
+// zero: devices may flush numbers below float's normal range.
 std::unique_ptr<FocusPlanes> make_host_focus_planes(const FocusPlanesPlan& plan);
 
-// In double: what both are held against.
+// The evaluation in double: the reference that host and device are tested against.
 std::unique_ptr<FocusPlanes> make_reference_focus_planes(const FocusPlanesPlan& plan);
 
 } // namespace vkfv::topography

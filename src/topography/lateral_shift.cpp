@@ -22,39 +22,39 @@ namespace {
 
 using surface::HeightMap;
 using Complex = std::complex<double>;
-// Of sizes known when compiled, the few lines below would take ten seconds to compile.
+// With sizes known when compiled, the few lines below would take ten seconds to compile.
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-// How much better two surfaces that correlate explain so many points than two that do not: the logarithm of
-// the ratio of the likelihoods of normal heights, twice. It weighs a slightly better match of fewer points.
+// Twice the logarithm of the likelihood ratio of correlated to uncorrelated surfaces with normal heights, for so many
+// points. It balances a slightly better match against fewer points.
 double evidence(double points, double correlation) {
-    constexpr double least = 1e-3; // of the variance, left unexplained: less is the interpolation's
+    constexpr double least = 1e-3; // least unexplained share of the variance; interpolation alone leaves as much
     return correlation > 0 ? -points * std::log(std::max(1 - correlation * correlation, least)) : 0;
 }
 
 struct Starts {
     std::vector<LateralShift> shifts;   // whole pitches, the best first
-    double significant_correlation = 1; // of the best of unrelated surfaces hardly any reaches it
+    double significant_correlation = 1; // the best of unrelated surfaces hardly ever reaches it
 };
 
-// The farthest lags that are looked at, in points to either side.
+// The farthest lags searched, in points to either side.
 struct Reach {
     int x = 0;
     int y = 0;
 };
 
-// Sums over pairs of points by lag, from measured heights a and true ones b in units of their Sq: of presence and of
-// a b; of a and of b where the other is present; of their squares there.
+// Sums over pairs of points by lag, for measured heights a and true ones b in units of their Sq: of presence and of a
+// b; of a and of b where the other is present; of their squares there.
 struct Correlations {
     Grid<Complex> first, second, third;
     double points = 0;                                  // at lag zero
     double powers_a = 0, powers_b = 0, powers_both = 0; // sums over frequencies
 };
 
-// From the transforms of presence and a; b and a^2; b^2 to those of the sums.
+// Replaces the transforms of (presence and a), (b and a^2), (b^2) by those of the sums.
 void correlate(Correlations& of) {
     for (int row = 0; row < of.first.rows; ++row)
         for (int column = 0; column < of.first.columns; ++column) {
@@ -63,7 +63,7 @@ void correlate(Correlations& of) {
             const std::size_t here = of.first.index(column, row), there = of.first.index(opposite_column, opposite_row);
             if (there < here)
                 continue;
-            // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i
+            // The transform of a + i b with real a and b is A + i B; at the opposite frequency it is conj(A) + i
             // conj(B).
             const auto parts = [&](const Grid<Complex>& grid) {
                 const Complex value = grid.values[here], other = std::conj(grid.values[there]);
@@ -87,11 +87,11 @@ void correlate(Correlations& of) {
         }
 }
 
-// By Fourier transform, after D. Padfield, "Masked object registration in the Fourier domain", 2012.
+// The sums by Fourier transform, after D. Padfield, "Masked object registration in the Fourier domain", 2012.
 Correlations correlations(const LevelledPair& pair, double sq_measured, double sq_true, const Reach& reach) {
     const int columns = pair.measured.columns(), rows = pair.measured.rows();
-    // Zeros as wide as the reach keep the ends apart. Two real grids go through one transform: presence and
-    // a; b and a^2; b^2.
+    // Zeros as wide as the reach keep the ends apart. Two real grids go through one transform: presence and a; b and
+    // a^2; b^2.
     Correlations of;
     of.first = of.second = of.third =
         Grid<Complex>(convenient_length(columns + reach.x + 1), convenient_length(rows + reach.y + 1));
@@ -112,9 +112,9 @@ Correlations correlations(const LevelledPair& pair, double sq_measured, double s
     return of;
 }
 
-// Of Pearson's correlation over the points that overlap, at every lag. Without enough points a lag has none.
+// The evidence of Pearson's correlation over the overlapping points at every lag; 0 for lags with too few points.
 Grid<double> evidence_by_lag(const Correlations& of, const Reach& reach) {
-    constexpr double least_overlap = 0.25; // of the points at lag zero
+    constexpr double least_overlap = 0.25; // share of the points at lag zero
     Grid<double> evidences(2 * reach.x + 1, 2 * reach.y + 1);
     for (int j = -reach.y; j <= reach.y; ++j)
         for (int i = -reach.x; i <= reach.x; ++i) {
@@ -125,7 +125,7 @@ Grid<double> evidence_by_lag(const Correlations& of, const Reach& reach) {
             const double mean_a = of.second.values[lag].real() / n, mean_b = of.second.values[lag].imag() / n;
             const double variance_a = of.third.values[lag].real() / n - mean_a * mean_a;
             const double variance_b = of.third.values[lag].imag() / n - mean_b * mean_b;
-            // Of 1 at lag zero: what is left of less is rounding.
+            // Variances are 1 at lag zero; smaller ones than these are rounding.
             if (variance_a > 1e-9 && variance_b > 1e-9)
                 evidences(i + reach.x, j + reach.y) = evidence(n, (of.first.values[lag].imag() / n - mean_a * mean_b) /
                                                                       std::sqrt(variance_a * variance_b));
@@ -133,11 +133,11 @@ Grid<double> evidence_by_lag(const Correlations& of, const Reach& reach) {
     return evidences;
 }
 
-// The lags of the highest peaks, the best first.
+// The lags of the highest peaks of evidence, the best first.
 std::vector<LateralShift> shifts_of_peaks(const Grid<double>& evidences, const Reach& reach, double pitch_x,
                                           double pitch_y) {
     constexpr std::size_t most = 3;
-    constexpr double worth_a_try = 0.5; // of the best one's evidence
+    constexpr double worth_a_try = 0.5; // share of the best evidence
     struct Peak {
         double evidence;
         LateralShift shift;
@@ -161,9 +161,9 @@ std::vector<LateralShift> shifts_of_peaks(const Grid<double>& evidences, const R
     return shifts;
 }
 
-// The correlation of unrelated surfaces has the variance 1 / n, n the number of independent points: all of them over
-// the summed product of both autocorrelations (M. S. Bartlett 1935), which by Parseval's theorem is a sum over
-// frequencies. The best of m independent lags exceeds the sqrt(2 ln m)-fold of Fisher's z by little.
+// The correlation of unrelated surfaces has the variance 1 / n, where n is the number of independent points: all points
+// over the summed product of both autocorrelations (M. S. Bartlett 1935), which by Parseval's theorem is a sum over
+// frequencies. The largest of m independent lags exceeds sqrt(2 ln m) standard deviations of Fisher's z by little.
 double significant_correlation(const Correlations& of, std::size_t looked_at) {
     const double patch = of.powers_both / (of.powers_a * of.powers_b) * static_cast<double>(of.first.values.size());
     const double independent = of.points / patch;
@@ -183,7 +183,7 @@ Starts starting_shifts(const LevelledPair& pair) {
             .significant_correlation = significant_correlation(of, evidences.values.size())};
 }
 
-// Of a symmetric matrix, as if it had no directions in which it is at most `least`.
+// The pseudo-inverse of a symmetric matrix without the directions in which the matrix is at most `least`.
 struct PseudoInverse {
     MatrixXd inverse;
     MatrixXd known; // the projector on the other directions
@@ -203,8 +203,8 @@ PseudoInverse pseudo_inverse(const MatrixXd& matrix, double least) {
     return result;
 }
 
-// Sums of the products of the residual's derivatives by shift in x and y, offset, tilt in x and y; of those and the
-// residual.
+// Normal equations: sums of products of the residual's derivatives by shift in x and y, offset, tilt in x and y; and of
+// these with the residual.
 struct NormalEquations {
     MatrixXd matrix = MatrixXd::Zero(5, 5);
     VectorXd right = VectorXd::Zero(5);
@@ -217,7 +217,7 @@ NormalEquations normal_equations(const HeightMap& measured, const HeightMap& tru
     for (int row = border_y; row + border_y < measured.rows(); ++row)
         for (int column = border_x; column + border_x < measured.columns(); ++column) {
             const double residual = measured.height(column, row) - truth.height(column, row);
-            // Zero along an axis of fewer than three points.
+            // The slope is zero along an axis of fewer than three points.
             const double slope_x =
                 (truth.height(column + border_x, row) - truth.height(column - border_x, row)) / (2 * measured.pitch_x);
             const double slope_y =
@@ -241,22 +241,22 @@ NormalEquations normal_equations(const HeightMap& measured, const HeightMap& tru
 
 struct Step {
     glm::dvec2 shift;
-    glm::dmat2 known; // the projector on the directions that the slopes tell
+    glm::dmat2 known; // projector on the directions in which the slopes determine a shift
 };
 
 // The step of the shift that makes the linearised sum of squares least.
 Step gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
-    // Variation along a direction, offset and tilt aside, of the mean square slope: interpolation makes up
+    // The least variation along a direction, without offset and tilt, over the mean square slope: interpolation causes
     // less.
     constexpr double telling = 1e-5;
     constexpr double rounding = 1e-12;
     const auto [matrix, right] = normal_equations(measured, truth);
-    // Unknowns of unlike magnitude are brought to one.
+    // Unknowns of unlike magnitude are scaled to one.
     MatrixXd scale = MatrixXd::Zero(3, 3);
     for (int k = 0; k < 3; ++k)
         scale(k, k) = matrix(k + 2, k + 2) > 0 ? 1 / std::sqrt(matrix(k + 2, k + 2)) : 0;
     const MatrixXd plane = scale * matrix.bottomRightCorner(3, 3) * scale;
-    // Offset and tilt are eliminated first: a slope that they explain tells no shift.
+    // Offset and tilt are eliminated first: a slope that they explain determines no shift.
     const MatrixXd explained =
         matrix.topRightCorner(2, 3) * scale * pseudo_inverse(plane, 3 * rounding).inverse * scale;
     const MatrixXd slopes = matrix.topLeftCorner(2, 2);
@@ -266,7 +266,7 @@ Step gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
     return {.shift = {shift[0], shift[1]}, .known = {known(0, 0), known(1, 0), known(0, 1), known(1, 1)}};
 }
 
-// NaN where the iteration finds no minimum within the searched range.
+// The shift refined from `start`; NaN where the iteration finds no minimum within the searched range.
 LateralShift refined_shift(const HeightMap& measured, const HeightMap& truth, const LateralShift& start) {
     constexpr int most_iterations = 50;
     constexpr double settled = 1e-4; // pitches
@@ -281,8 +281,8 @@ LateralShift refined_shift(const HeightMap& measured, const HeightMap& truth, co
             return none;
         if (iteration == 0)
             place = step.known * place;
-        // The points present change with the shift, at the border with its very sign: between two steps that
-        // turn back, each for its own points, half the way is taken.
+        // The points present change with the shift, at the border even with its sign: between two steps in opposite
+        // directions, each for its own points, half the step is taken.
         for (int axis = 0; axis < 2; ++axis)
             if (step.shift[axis] * before[axis] < 0)
                 share[axis] /= 2;

@@ -15,7 +15,7 @@ LocalPlane plane_of(const PlaneMoments& m) {
                  syy = m.about_means(m.yy, m.y, m.y);
     const double sxz = m.about_means(m.xz, m.x, m.z), syz = m.about_means(m.yz, m.y, m.z);
     const double determinant = sxx * syy - sxy * sxy;
-    constexpr double least = 1e-3; // of the two moments' product: heights along a line have no plane
+    constexpr double least = 1e-3; // share of the two moments' product: heights along a line determine no plane
     if (!(determinant > least * sxx * syy)) {
         return {.middle = m.z / m.weight};
     }

@@ -8,7 +8,7 @@
 
 namespace vkfv::topography {
 
-// Where the name stands among the names. InputError with this key and remedy if it is none of them.
+// The index of the name among the names. Throws InputError with this key and remedy if it is none of them.
 std::size_t place_of_name(std::string_view name, const std::vector<std::string>& names, const char* key,
                           const char* remedy);
 

@@ -40,7 +40,7 @@ PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const s
         }));
     }
     mean_kept_ = std::accumulate(kept_.begin(), kept_.end(), 0.0) / images;
-    // The largest value of the curve chooses among as many places as means that share few images.
+    // The largest value of the curve is chosen among as many places as there are means that share few images.
     const double places = std::max(1.0, images * kept_[kept_.size() / 2]);
     normal_ = normal_exceeded_with(rate / places);
 }
@@ -74,7 +74,8 @@ bool PersistenceLimit::exceeded_by(const focus::f64::CurveRecord& curve, double 
         return false;
     }
     const double everywhere = persisting(curve.joint_squares / images, curve.alone_sum / images, mean_kept_);
-    // If the same persisted everywhere: the deviation of noise of the energy N, and of its product with what persists.
+    // If the same pattern persisted everywhere, this is the deviation of noise of energy N and of its product with the
+    // pattern.
     const double noise = kept * passing;
     return here - everywhere > beyond * std::sqrt(noise * noise + 2 * std::max(0.0, everywhere) * noise);
 }

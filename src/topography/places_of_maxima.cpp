@@ -12,12 +12,12 @@
 namespace vkfv::topography {
 namespace {
 
-// Of the widths of PlacesByWidth.
+// The logarithm of the ratio of neighbouring widths of PlacesByWidth.
 const double step_of_logarithms = 0.25 * std::log(2.0);
 constexpr int widths_on_a_side = 6;
 
 // An end is felt as far as it moves the maxima of curves 1.7 times as wide as the stack's by a hundredth of a step.
-// Beyond that heights are those of the stack's width, which needs no curve of their own.
+// Further away heights are those of the stack's width, and need no width of their own curve.
 constexpr int widths_wider = 3;
 constexpr double negligible = 0.01; // steps
 
@@ -27,7 +27,7 @@ struct Row {
     std::vector<double> weights;
 };
 
-// Of the points from an end on, so many as its maxima are found by.
+// The rows of the points from an end on, as many as are needed to find maxima.
 std::vector<Row> rows_near_the_end(const std::vector<double>& weights, int images, int points) {
     const int reach = 2 * (static_cast<int>(weights.size()) - 1);
     std::vector<Row> rows;
@@ -63,7 +63,7 @@ class AveragedGaussian {
         return value;
     }
 
-    // The point of the largest value, from this one on: the curve has one maximum.
+    // The point of the largest value, searched from this point on: the curve has one maximum.
     int summit_from(int at) const {
         const int last = static_cast<int>(values_.size()) - 1;
         while (at < last && curve_value(at + 1) > curve_value(at)) {
@@ -77,20 +77,20 @@ class AveragedGaussian {
 
   private:
     const std::vector<Row>& rows_;
-    mutable std::vector<double> values_; // NaN: not computed
+    mutable std::vector<double> values_; // NaN: not yet computed
     std::vector<double> singles_;
 };
 
-// In steps from the end: where it is not felt any more, or the middle of the scan.
+// The distance from the end, in steps, up to which it is felt; at most the middle of the scan.
 double end_felt_to(const std::vector<double>& weights, int images) {
     return std::min(2.0 * (static_cast<double>(weights.size()) - 1), 0.5 * (images - 1));
 }
 
-// Of curves from the end to where it is not felt, in ascending order of `found`. None comes at the beginning, where the
-// scan ends.
+// The maxima of curves whose places go from the end to where it is not felt, in ascending order of `found`. Maxima at
+// the first point are left out, as the scan ends there.
 std::vector<MaximumNearEnd> maxima_near_the_end(const std::vector<Row>& rows, int images, double last,
                                                 double curve_width, const PeakFinder& finder) {
-    // Straight lines between places so close leave out a thousandth of a step.
+    // With places this close, linear interpolation errs by a thousandth of a step.
     constexpr double finest = 0.05; // steps
     constexpr int most_places = 240;
     const int places = std::min(most_places, static_cast<int>(std::ceil(last / finest)));
@@ -130,13 +130,13 @@ std::vector<double> positions(const std::vector<double>& weights, int images) {
     return places;
 }
 
-// Linearly between values at integers.
+// Interpolates linearly between values at integers.
 double on_line(const std::vector<double>& line, double at) {
     const auto before = std::min(static_cast<std::size_t>(std::max(0.0, at)), line.size() - 2);
     return line[before] + (at - static_cast<double>(before)) * (line[before + 1] - line[before]);
 }
 
-// Between which two maxima a place lies that is not before the first of them.
+// The index of the maximum before a place that is not before the first of them.
 std::size_t maximum_before(const std::vector<MaximumNearEnd>& maxima, double found) {
     const auto after = std::ranges::upper_bound(maxima, found, {}, &MaximumNearEnd::found);
     return static_cast<std::size_t>(
@@ -152,7 +152,7 @@ double between_maxima(const std::vector<MaximumNearEnd>& maxima, double found, d
     return std::lerp(maxima[k].*figure, maxima[k + 1].*figure, std::min(share, 1.0));
 }
 
-// Where a curve lies whose maximum is found there, in steps from the end; line: averaged_points().
+// The place of a curve whose maximum is found at `found`, in steps from the end; line: averaged_points().
 double place_near_the_end(const std::vector<MaximumNearEnd>& maxima, const std::vector<double>& line, double found) {
     const MaximumNearEnd& first = maxima.front();
     return found < first.found ? std::max(0.0, on_line(line, found) + first.place - on_line(line, first.found))
@@ -179,7 +179,7 @@ std::vector<double> places_of_maxima(const std::vector<double>& weights, int ima
     if (maxima.empty()) {
         return places;
     }
-    // The other half is the mirror image of the first.
+    // The other end is the mirror image of this one.
     const std::vector<double> line = places;
     for (int at = 0; 2 * at < images - 1 && at < last; ++at) {
         const double place = place_near_the_end(maxima, line, at);
@@ -223,7 +223,7 @@ PlacesByWidth::PlacesByWidth(const std::vector<double>& weights, int images, dou
         const double width = curve_width * std::exp((k - widths_on_a_side) * step_of_logarithms);
         by_width_[static_cast<std::size_t>(k)] = maxima_near_the_end(rows, images, last_, width, finder);
     });
-    // The maxima of very wide curves all come to the end itself.
+    // Very wide curves have no maxima here, since all of them move to the end itself.
     by_width_.erase(std::ranges::find_if(by_width_, [](const auto& maxima) { return maxima.empty(); }),
                     by_width_.end());
     if (by_width_.size() <= widths_on_a_side) {
@@ -254,7 +254,7 @@ PlacesByWidth::Width PlacesByWidth::width(int image, double offset, double curva
     const double found = from_the_end(at);
     const int nearest_image = found == at ? image : images_ - 1 - image;
     struct Known {
-        double logarithm, curvature; // the logarithm of the curvature
+        double logarithm, curvature; // both are logarithms
     };
     std::vector<Known> known;
     known.reserve(by_width_.size());
@@ -291,8 +291,8 @@ PlacesByWidth::Width PlacesByWidth::width(int image, double offset, double curva
             .weight = std::pow((one.curvature - other.curvature) / step_of_logarithms, 2)};
 }
 
-// The curvature by three values depends on which three they are, and jumps where the largest value becomes another:
-// what is compared are curves with the largest value at the same image.
+// The curvature by three values depends on the three chosen, and jumps where the largest value becomes another: so
+// curves with the largest value at the same image are compared.
 double PlacesByWidth::curvature_of(std::size_t width, int image, double found) const {
     const auto& maxima = by_width_[width];
     const auto first = std::ranges::lower_bound(maxima, image, {}, &MaximumNearEnd::image);

@@ -28,14 +28,14 @@ struct Shift {
     double certainty = 0; // at most 1
 };
 
-// Weights of four neighbours around a fraction of their middle interval.
+// Weights of four neighbours at a fraction of their middle interval.
 std::array<double, 4> cubic_weights(double t) {
     return {((-0.5 * t + 1) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1, ((-1.5 * t + 2) * t + 0.5) * t,
             (0.5 * t - 0.5) * t * t};
 }
 
-// The image of the part's size that begins at the part's corner plus the shift, between pixels by cubic convolution.
-// Beyond the image its border is repeated.
+// The cut-out of the image at the part's place plus the shift, interpolated between pixels by cubic convolution. Beyond
+// the image its border is repeated.
 Grid<double> cut_out(const Grid<float>& image, const Part& part, const Shift& from) {
     const double left = std::floor(from.x), top = std::floor(from.y);
     const auto along_x = cubic_weights(from.x - left), along_y = cubic_weights(from.y - top);
@@ -63,8 +63,8 @@ Grid<double> cut_out(const Grid<float>& image, const Part& part, const Shift& fr
     return result;
 }
 
-// The spectrum of the part without its mean. It fades to nothing at its edges, which would agree otherwise wherever the
-// images differ.
+// The spectrum of the part minus its mean. The part fades to zero at its edges, which would otherwise agree wherever
+// the images differ.
 Spectrum windowed_spectrum(const Grid<float>& image, const Part& part, const Shift& from) {
     const Grid<double> values = cut_out(image, part, from);
     const double mean = std::accumulate(values.values.begin(), values.values.end(), 0.0) /
@@ -80,8 +80,9 @@ Spectrum windowed_spectrum(const Grid<float>& image, const Part& part, const Shi
     return spectrum;
 }
 
-// The other image's part, which begins at `from`, against the reference's: their phases differ by -2 pi (f, shift).
-// Frequencies count by their power in both: where the images have little, noise and the fading edges decide.
+// The cross-spectrum of the reference's part and the other image's, which begins at `from`: phases differ by -2 pi (f,
+// shift). Frequencies count by their power in both: where the images have little power, noise and the fading edges
+// would decide.
 Spectrum cross_spectrum(const Spectrum& reference, const Grid<float>& image, const Part& part, const Shift& from) {
     Spectrum cross = reference;
     const Spectrum other = windowed_spectrum(image, part, from);
@@ -90,7 +91,7 @@ Spectrum cross_spectrum(const Spectrum& reference, const Grid<float>& image, con
         cross.values[k] = std::conj(cross.values[k]) * other.values[k];
         mean += std::abs(cross.values[k]) / static_cast<double>(cross.values.size());
     }
-    // Fine waves are out of focus in one image or the other, and noise in both.
+    // Fine waves are out of focus in one image or the other, and noise affects both.
     constexpr double finest = 0.15; // cycles a pixel
     for (int row = 0; row < part.rows; ++row) {
         for (int column = 0; column < part.columns; ++column) {
@@ -103,7 +104,7 @@ Spectrum cross_spectrum(const Spectrum& reference, const Grid<float>& image, con
     return cross;
 }
 
-// What is left of a shift of less than a pixel: the plane through the phases.
+// The remaining shift of less than a pixel, from the plane through the phases.
 Shift slope_of_phases(const Spectrum& cross) {
     double xx = 0, xy = 0, yy = 0, x = 0, y = 0;
     for (int row = 0; row < cross.rows; ++row) {
@@ -124,7 +125,8 @@ Shift slope_of_phases(const Spectrum& cross) {
                            : Shift{};
 }
 
-// To whole pixels, by the highest correlation; the certainty is that it has of what identical images would have.
+// The shift to whole pixels, by the highest correlation; its certainty is this correlation over that of identical
+// images.
 Shift whole_shift(Spectrum cross) {
     double total = 0;
     for (const auto& value : cross.values) {
@@ -146,9 +148,9 @@ Shift whole_shift(Spectrum cross) {
     return best;
 }
 
-// The first pass compares the same place in both images, each later one the places that have been found so far, so that
-// both show the same in the end. The plane through the phases alone finds less than the whole rest of a shift, because
-// noise has no slope and the fading edges do not move; what it leaves over, the next pass finds.
+// The first pass compares the same place in both images; each later one compares the places found so far, so that both
+// show the same in the end. The plane through the phases underestimates the rest of a shift, because noise has no slope
+// and the fading edges do not move; the next pass finds the remainder.
 Shift shift_of(const Grid<float>& reference, const Grid<float>& image, const Part& part) {
     constexpr int most_passes = 6;
     constexpr double settled = 0.01; // pixel
@@ -170,7 +172,7 @@ Shift shift_of(const Grid<float>& reference, const Grid<float>& image, const Par
     return found;
 }
 
-// No larger than a kilopixel a side: enough for a hundredth of a pixel.
+// The part in the middle, at most 1024 pixels a side: enough for a hundredth of a pixel.
 Part middle_part(int columns, int rows) {
     constexpr int most = 1024;
     Part part{.column = 0, .row = 0, .columns = std::min(columns, most), .rows = std::min(rows, most)};

@@ -8,11 +8,11 @@
 namespace vkfv::topography {
 namespace {
 
-constexpr std::size_t least_neighbours = 5; // a majority: the median is then between measured heights
+constexpr std::size_t least_neighbours = 5; // a majority, so that the median is between measured heights
 constexpr double normal_mad = 1.4826;       // standard deviation over median absolute deviation, of normal values
 constexpr double outlying = 6;              // robust standard deviations
 
-// The middle value, of an even number the lower of the middle two, so that it is one of the heights.
+// The middle value, or the lower of the middle two for an even number, so that it is one of the heights.
 template <class Iterator>
 double median(Iterator begin, Iterator end) {
     const auto middle = begin + (end - begin - 1) / 2;

@@ -11,7 +11,7 @@ namespace {
 
 using surface::HeightMap;
 
-// Of one point: sums over the repetitions that measured it.
+// Sums of one point over the repetitions that measured it.
 struct PointSums {
     double count = 0, sum = 0, squares = 0;
 
@@ -24,7 +24,7 @@ struct PointSums {
     double residuals() const { return std::max(0.0, squares - sum * sum / count); }
 };
 
-// Of the whole map.
+// Sums over the whole map.
 struct Totals {
     double points = 0, mean_squares = 0, mean_scatter = 0, residuals = 0, freedoms = 0;
 

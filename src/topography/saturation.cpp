@@ -5,7 +5,7 @@
 namespace vkfv::topography {
 namespace {
 
-constexpr float just_below = 0.98f; // of the largest value
+constexpr float just_below = 0.98f; // as a share of the largest value
 
 } // namespace
 
@@ -28,10 +28,10 @@ void SaturationCount::add(std::span<const float> values) {
 
 Saturation SaturationCount::found() const {
     constexpr double least_share = 1e-4;
-    constexpr std::size_t least_values = 1000; // of fewer, any may be the same by chance
+    constexpr std::size_t least_values = 1000; // fewer values may be equal by chance
     constexpr std::size_t times_as_many = 4;
     const double share = all_ > 0 ? static_cast<double>(there_) / static_cast<double>(all_) : 0;
-    // Images of one value everywhere are no photographs.
+    // Images that have one value everywhere are not photographs, and count as unsaturated.
     const bool saturated = largest_ > 0 && share >= least_share && all_ >= least_values &&
                            there_ > times_as_many * below_ && there_ < all_;
     return saturated ? Saturation{.level = largest_, .share = share} : Saturation{};

@@ -1,4 +1,5 @@
-// Where a camera cut values off: as many pixels have the largest value as would have it and many others above it.
+// Saturation: the level at which a camera clips values. Pixels that are brighter have this value too, so it is far more
+// frequent than values just below.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +9,8 @@
 namespace vkfv::topography {
 
 struct Saturation {
-    float level = std::numeric_limits<float>::infinity(); // of the values that are cut off, in the images' unit
-    double share = 0;                                     // of all values
+    float level = std::numeric_limits<float>::infinity(); // level at which values are clipped, in the images' unit
+    double share = 0;                                     // share of saturated values
 };
 
 // Counts values as they come.
@@ -17,13 +18,13 @@ class SaturationCount {
   public:
     void add(std::span<const float> values);
 
-    // The largest value, if it is there far more often than those just below it.
+    // The largest value, if it occurs far more often than values just below it.
     Saturation found() const;
 
   private:
     float largest_ = 0;
-    std::size_t there_ = 0; // with the largest value
-    std::size_t below_ = 0; // with less, but hardly
+    std::size_t there_ = 0; // number of values equal to the largest
+    std::size_t below_ = 0; // number of values just below the largest
     std::size_t all_ = 0;
 };
 

@@ -22,7 +22,7 @@ namespace vkfv::topography {
 namespace {
 
 constexpr int most_peak_range_steps = 100; // 202 curves in memory
-constexpr double dark = 0.01;              // of the stack's mean brightness
+constexpr double dark = 0.01;              // share of the stack's mean brightness
 constexpr int wide_places_a_side = 8;
 
 void require(bool good, std::string key, std::string found, std::string expected, std::string remedy) {
@@ -62,15 +62,15 @@ const TopographyOptions& checked(const TopographyOptions& options) {
     return options;
 }
 
-// Standard deviation of a single image's noise over its brightness. The variances of the channels are
-// added, as their energies are: that is the noise of the measure if the channels' noises agree, as after demosaicing,
-// and an upper bound of it if not.
+// Standard deviation of a single image's noise over its brightness. The variances of the channels are added, as their
+// energies are: that is the noise of the measure if the channels' noises agree, as after demosaicing, and an upper
+// bound of it if not.
 double relative_noise(double brightness, const NoiseModel& model) {
     return brightness > 0 ? std::sqrt(model.variance(brightness)) / brightness : 0;
 }
 
-// Five windows wide, for a fifth of the noise; but not so wide that a single step of the specimen's would lie in most
-// of them. 0: there is no room for one at least twice as wide.
+// Width of the wide windows: five windows, for a fifth of the noise, but not so wide that a single step of the specimen
+// would lie in most of them. 0: there is no room for a window at least twice as wide.
 int wide_window(int window_px, int columns, int rows) {
     constexpr int widening = 5, most_of_the_image = 6;
     const int most = std::min(widening * window_px, std::min(columns, rows) / most_of_the_image);
@@ -81,8 +81,8 @@ double mean_of(const Grid<float>& grid) {
     return std::accumulate(grid.values.begin(), grid.values.end(), 0.0) / static_cast<double>(grid.values.size());
 }
 
-// A twenty-fifth or more of the measured points would be so by chance: those that are not cannot be told from them. Who
-// asks for a high rate accepts twice as much.
+// True if a twenty-fifth or more of the measured points, or more than twice the accepted rate, would be measured by
+// chance: the others cannot be told from them. A user who sets a high rate accepts twice as much.
 bool mostly_by_chance(const Topography& topography, double chance_rate, double accepted_rate) {
     const double most = std::max(0.04, 2 * accepted_rate);
     const auto& states = topography.state.values;
@@ -102,21 +102,21 @@ void leave_out_chance(Topography& topography) {
 }
 
 // Relative standard uncertainty of the width of the curves, by which maxima near an end of the scan are moved
-// (places_of_maxima.hpp). The width is found from the same images: a tenth is by how much less is found of curves three
-// images from an end than of the same curves in the middle of the scan. Gradients see coarser texture too, whose curves
-// have longer flanks: of theirs a fifth less is found.
+// (places_of_maxima.hpp). The width is found from the same images: for curves three images from an end it is a tenth
+// less than for the same curves in the middle of the scan. Gradients also respond to coarser texture, whose curves have
+// longer flanks: for them it is a fifth less.
 double width_uncertainty_of(FocusMeasure measure) {
     return measure == FocusMeasure::gradient_and_curvature ? 0.2 : 0.1;
 }
 
-// A maximum that an end of the scan moves.
+// A maximum near an end of the scan, which the end moves.
 struct NearEnd {
-    double found = std::numeric_limits<double>::quiet_NaN(); // in steps of the scan; NaN: no end moves it
-    PlacesByWidth::Width width{};                            // by this point's curve alone
+    double found = std::numeric_limits<double>::quiet_NaN(); // found place, in steps of the scan; NaN: no end moves it
+    PlacesByWidth::Width width{};                            // width by this point's curve alone
 };
 
-// Widths by the curves within twice the window's reach, whose noise is partly another. NaN where no end moves a
-// maximum.
+// Mean widths of the curves within twice the window's reach, whose noise is partly independent. NaN where no end moves
+// a maximum.
 Grid<double> widths_around(const Grid<NearEnd>& points, int reach) {
     Grid<double> result(points.columns, points.rows, std::numeric_limits<double>::quiet_NaN());
     if (std::ranges::all_of(points.values, [](const NearEnd& point) { return std::isnan(point.found); })) {
@@ -155,12 +155,13 @@ Grid<double> widths_around(const Grid<NearEnd>& points, int reach) {
     return result;
 }
 
-// Where the probes do not tell: texture of the noise's own spectrum, which fades as the stack's curves do.
+// The assumption where the probes show nothing: texture of the noise's own spectrum, which fades as the stack's curves
+// do.
 TextureAndNoise assumed(double gain, double curve_width) {
     TextureAndNoise result;
     result.alone = gain / 2;
     result.share = 1;
-    result.bend_variance = 1; // beside which noise is little
+    result.bend_variance = 1; // so large that noise is little beside it
     for (int image = 0; image == 0 || image < 3 * curve_width; ++image) {
         result.energy.push_back(curve_width > 0 ? std::exp(-std::pow(image / curve_width, 2)) : 1);
         result.beside.push_back(gain);
@@ -168,7 +169,8 @@ TextureAndNoise assumed(double gain, double curve_width) {
     return result;
 }
 
-// At these places of the scan, in steps, by the readings around each: their averages, which stand for `averaged`.
+// Heights by the readings at these places of the scan (in steps): averages of the readings around each, moved from the
+// position of the average (`averaged`) to the place.
 std::vector<double> readings_at(const std::vector<double>& places, const std::vector<AveragedPoint>& averaged,
                                 const std::vector<double>& readings, const std::vector<double>& weights) {
     const auto images = static_cast<int>(readings.size());
@@ -210,7 +212,7 @@ void StackEvaluator::check(const Channels& image, double z) const {
     require(z > z_.back(), which, fmt::format("z = {} mm after {} mm", z, z_.back()), "ascending z",
             "Order the images by z.");
     if (z_.size() >= 2) {
-        constexpr double tolerance = 0.01; // of a step: far below the noise of any height
+        constexpr double tolerance = 0.01; // share of a step: far below the noise of any height
         const double expected = z_[0] + static_cast<double>(z_.size()) * (z_[1] - z_[0]);
         require(std::abs(z - expected) <= tolerance * (z_[1] - z_[0]), which, fmt::format("z = {} mm", z),
                 fmt::format("z = {} mm, equidistant", expected), "Use a stack with one step.");
@@ -243,7 +245,8 @@ void StackEvaluator::begin(const Channels& first) {
         for (const int column : curve_grid_.columns_of(columns_))
             curve_pixels_.push_back(static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(columns_) +
                                     static_cast<std::uint32_t>(column));
-    // An image is judged once the curve's average has passed it by the range: its own neighbours are asked for then.
+    // An image is judged once the averaged curve is known over the range after it; the images around it are needed
+    // until then.
     planes_ = make_planes_({.plan = plan,
                             .window = window_,
                             .images_averaged = radius > 0,
@@ -271,7 +274,7 @@ void StackEvaluator::add(Channels image, double z, std::optional<double> reading
     advance(false);
 }
 
-// Does what the images at hand allow, each step as soon as it can be done: no plane is asked for that has left its
+// Takes all steps that the images at hand allow, each as soon as possible, so that no plane is needed that has left its
 // ring.
 void StackEvaluator::advance(bool all_taken) {
     const int radius = static_cast<int>(axial_weights_.size()) - 1;
@@ -336,7 +339,7 @@ FocusCurves StackEvaluator::curves_of(const StackSummary& stack, const std::vect
     return result;
 }
 
-// What a curve must have to be no matter of chance.
+// Figures of the stack as a whole, including the limits that a curve must exceed to be measured.
 StackFigures StackEvaluator::judge_stack() const {
     const int images = static_cast<int>(z_.size());
     StackFigures figures;
@@ -352,7 +355,7 @@ StackFigures StackEvaluator::judge_stack() const {
         // Points whose windows overlap pass together: with a third of the rate, a patch of them is rare too.
         constexpr double share_of_rate = 1.0 / 3;
         const bool averaged = axial_weights_.size() > 1;
-        // Where not even texture persists that is beyond doubt, persistence tells nothing of a point.
+        // If even strong texture does not persist, persistence is no evidence for a point.
         constexpr double least_persistence = 0.25;
         const auto of_strong = probes_->persistence_of_strong_texture(neighbour_weights_, averaged);
         if (of_strong.value_or(1) >= least_persistence)
@@ -386,10 +389,11 @@ PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, const foc
     if (curve.residual > options_.most_fit_residual) {
         return PointState::poor_fit;
     }
-    // Noise has maxima too: how prominent the largest of many are, as the range of normal values. Averages fill the
-    // valley between two maxima, single images hide it in their noise: either may show it.
+    // The prominence of the largest of many maxima of noise is the range of normal values. Averages fill the valley
+    // between two maxima, single images hide it in their noise: either may show it.
     const double by_noise = 2 * noise * std::sqrt(2 * std::log(static_cast<double>(images)));
-    // Where most wider windows, of less noise, have a second maximum, a point must be able to show that it has none.
+    // Where most wider windows, which have less noise, have a second maximum, a point must be able to show that it has
+    // none.
     const bool hidden = figures.rivalled() && by_noise * averaging > options_.most_rival * rise;
     const bool rivalled =
         options_.most_rival < 1 &&
@@ -401,7 +405,7 @@ PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, const foc
 
 namespace {
 
-// Linearly between a curve's points; at: a place, in points.
+// Interpolates linearly between a curve's points; at: a place, in points.
 template <class ValueOf>
 double between(double at, int points, const ValueOf& value_of) {
     const auto before = static_cast<std::size_t>(std::clamp(static_cast<int>(std::floor(at)), 0, points - 2));
@@ -409,7 +413,7 @@ double between(double at, int points, const ValueOf& value_of) {
     return here + (at - static_cast<double>(before)) * (value_of(before + 1) - here);
 }
 
-// Maps of so many points. place: where they lie.
+// Maps of so many points, none of which is measured. place: their positions.
 Topography nothing_measured(int columns, int rows, surface::HeightMap place) {
     Topography result;
     place.height = Grid<double>(columns, rows, std::numeric_limits<double>::quiet_NaN());
@@ -426,7 +430,7 @@ Topography nothing_measured(int columns, int rows, surface::HeightMap place) {
 Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     require(z_.size() >= 3, "stack", fmt::format("{} images", z_.size()), "at least 3 images",
             "A peak needs an image on either side: widen the scan.");
-    // By the probes alone, while the planes are finished.
+    // The probes are evaluated while the planes are finished.
     auto noise_of_probes = std::async(std::launch::async, [this] { return probes_->noise(); });
     auto correlation_of_probes = std::async(std::launch::async, [this] { return probes_->noise_correlation(); });
     auto levels_of_probes = std::async(std::launch::async, [this] { return probes_->levels(axial_weights_); });
@@ -437,7 +441,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const int images = static_cast<int>(z_.size());
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     const double brightness = mean_of(stack.brightness) / images;
-    const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
+    const Grid<float> brightness_around = window_mean(stack.brightness, window_); // sum over all images
     Topography result =
         nothing_measured(columns_, rows_, {.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch});
     const NoiseModel noise_model = noise_of_probes.get();
@@ -468,7 +472,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         const double pixels = window_.pixels(columns_, rows_, column, row);
         const double averaging = std::sqrt(points[static_cast<std::size_t>(curve.at)].variance);
         const double here = brightness_around(column, row) / images;
-        // Of a single image's value.
+        // The noise of a single image's measure.
         const double image_noise = relative_noise(here, noise_model) * gain / std::sqrt(pixels);
         const double rise = curve.largest - curve.sum / images;
         result.contrast(column, row) = rise / (image_noise * averaging);
@@ -496,7 +500,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         }
     };
     planes_->visit_records(judge_point);
-    // Heights near an end are those of curves of their own width, and it tells how far they may be off.
+    // Heights near an end are corrected by the width of the curves around them, whose uncertainty gives that of the
+    // height.
     const Grid<double> widths = widths_around(near_ends, 2 * window_.radius());
     Grid<double> end_uncertainty(columns_, rows_);
     const double wider = std::log(1 + width_uncertainty_of(measure_));

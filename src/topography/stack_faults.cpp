@@ -13,7 +13,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-// Means of so many pixels a side; what is left over at the end is not used.
+// Means over so many pixels a side; the remainder at the end is not used.
 Grid<float> binned(const Channels& image, int side) {
     Grid<float> result(image[0].columns / side, image[0].rows / side);
     const auto share = static_cast<float>(1.0 / (static_cast<double>(image.size()) * side * side));
@@ -38,8 +38,8 @@ void find_faults_of_light(const std::vector<double>& brightness, StackFaults& fa
     for (std::size_t k = 2; k < brightness.size(); ++k) {
         seconds.push_back(std::abs(brightness[k - 2] - 2 * brightness[k - 1] + brightness[k]));
     }
-    // The median is that of normal values: a single step does not enlarge it. Second differences of independent values
-    // have six times their variance.
+    // The median of the magnitudes is scaled as for normal values, so that a single step does not enlarge it. Second
+    // differences of independent values have six times their variance.
     constexpr double median_of_normal = 0.6745;
     faults.flicker = median(seconds) / (median_of_normal * std::sqrt(6.0));
     constexpr int side = 3; // images
@@ -71,7 +71,7 @@ void StackFaultsFinder::add(const Channels& image) {
         pixels_a_bin_ = std::ceil(std::max(columns_, rows_) / static_cast<double>(most_a_side));
     }
     const int every = (images_ + most_movements - 1) / most_movements;
-    constexpr int least_bins = 32; // of which a quarter of a side can be followed
+    constexpr int least_bins = 32; // a quarter of a side can be followed
     if (place % every != 0 || image[0].columns != columns_ || image[0].rows != rows_ ||
         std::min(columns_, rows_) < least_bins * pixels_a_bin_) {
         return;
@@ -94,7 +94,7 @@ StackFaults StackFaultsFinder::finish() {
         }
         find_faults_of_light(brightness_, faults);
     }
-    // Each of the images that were compared, in the frame of the first, with the variances of what was added up.
+    // The place of each compared image in the frame of the first, with the sums of the variances.
     struct Place {
         ImageTransform transform{};
         double shift_variance = 0;

@@ -17,7 +17,7 @@ struct Vector {
     double y = 0;
 };
 
-// Of what the window gathers in a column, about the row of its middle.
+// Sums of the texture that the window has in a column, and of its moment about the window's middle row.
 struct TextureColumn {
     double total = 0;
     double y = 0;
@@ -33,7 +33,7 @@ TextureColumn texture_column(const Grid<double>& responses, const FocusWindow& w
     return sums;
 }
 
-// In pixels from the window's middle.
+// The centre of the window's texture, in pixels from the window's middle.
 Vector texture_centre(const std::vector<TextureColumn>& columns, const FocusWindow& window, int column) {
     const int count = static_cast<int>(columns.size());
     double total = 0;
@@ -48,8 +48,8 @@ Vector texture_centre(const std::vector<TextureColumn>& columns, const FocusWind
     return total > 0 ? Vector{.x = sum.x / total, .y = sum.y / total} : Vector{};
 }
 
-// Height a pixel, of the least-squares plane over a window of so many pixels a side; 0 where chance explains it.
-// neighbours: heights that have a window in common, whose distances from the plane are one.
+// Slope of the least-squares plane, height a pixel, over a window of so many pixels a side; 0 where chance explains it.
+// neighbours: number of heights that share a window, whose distances from the plane count as one.
 Vector slope(const PlaneMoments& around, double side, double neighbours) {
     if (around.weight < side * side / 2) {
         return {};

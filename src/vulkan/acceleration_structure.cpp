@@ -38,7 +38,7 @@ vk::PhysicalDeviceAccelerationStructurePropertiesKHR limits_of(const Device& dev
         .get<vk::PhysicalDeviceAccelerationStructurePropertiesKHR>();
 }
 
-// Checked before anything is uploaded.
+// The number of primitives, checked before anything is uploaded.
 std::uint32_t count_of(const Device& device, std::size_t primitives) {
     require_structures(device);
     if (primitives == 0) {
@@ -83,7 +83,7 @@ vk::raii::AccelerationStructureKHR build(const Device& device, std::vector<Buffe
     const Buffer scratch(device, sizes.buildScratchSize + alignment);
     info.setDstAccelerationStructure(*structure)
         .setScratchData((scratch.address() + alignment - 1) / alignment * alignment);
-    // First vertex 0: lavapipe applies another one twice.
+    // The first vertex is 0, as lavapipe applies another one twice.
     const vk::AccelerationStructureBuildRangeInfoKHR range(primitives, 0, 0, 0);
     const vk::AccelerationStructureBuildRangeInfoKHR* ranges = &range;
     Commands commands(device);
@@ -114,7 +114,7 @@ void order(std::span<Primitive> primitives) {
             }
         }
         const std::size_t left = (primitives.size() + 1) / 2;
-        // Ties fall by index, so that the order does not depend on the library's nth_element.
+        // Ties are broken by index, so that the order does not depend on the library's nth_element.
         std::nth_element(primitives.begin(), primitives.begin() + static_cast<std::ptrdiff_t>(left), primitives.end(),
                          [longest](const Primitive& a, const Primitive& b) {
                              return a.centre[longest] != b.centre[longest] ? a.centre[longest] < b.centre[longest]
@@ -163,7 +163,7 @@ void AccelerationStructure::build_top(const Device& device, std::span<const std:
 }
 
 AccelerationStructure AccelerationStructure::join(const Device& device, std::vector<AccelerationStructure> parts) {
-    constexpr std::size_t most_parts = 8; // bits of a mask
+    constexpr std::size_t most_parts = 8; // number of bits of a mask
     if (parts.empty() || parts.size() > most_parts) {
         throw std::logic_error("an acceleration structure joins one to eight parts");
     }

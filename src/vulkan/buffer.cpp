@@ -36,7 +36,7 @@ vk::BufferUsageFlags usage_on(const Device& device) {
                                bytes, device.report().name, limit, allowed, remedy));
 }
 
-// Cached memory where there is some: the host reads the others slowly.
+// Memory type for the host: cached memory if there is any, since the host reads other memory slowly.
 std::uint32_t host_memory_type(const Device& device, std::uint32_t type_bits) {
     using Property = vk::MemoryPropertyFlagBits;
     const vk::MemoryPropertyFlags needed = Property::eHostVisible | Property::eHostCoherent;

@@ -1,4 +1,4 @@
-// Device memory.
+// Buffers in the memory of a device.
 #pragma once
 
 #include "vulkan/device.hpp"
@@ -18,16 +18,16 @@ struct GiveBackMemory {
     void operator()(const Device* device) const { device->count_memory(-bytes); }
 };
 
-// Storage buffer (also uniform, transfer, device address, build input). Bytes; move-only.
+// A buffer for storage, uniforms, transfers, device addresses and build input. Sizes in bytes; move-only.
 class Buffer {
   public:
     enum class Memory {
         device, // fast; written and read through a staging copy
-        host,   // mapped and coherent; for read-back and for what the host writes often
+        host,   // mapped and coherent; for data that the host reads back or writes often
     };
-    // Contents are undefined. Throws RunError with sizes when the device cannot give `bytes`. The
-    // allocation is at least 64 bytes larger and a multiple of 64: GPU-assisted validation misreads the last
-    // scalar-packed record. remedy: what takes less memory, for the error.
+    // Contents are undefined. The allocation is at least 64 bytes larger and a multiple of 64: GPU-assisted validation
+    // misreads the last scalar-packed record. remedy: advice for the error on what takes less memory. Throws RunError
+    // with sizes when the device cannot give `bytes`.
     Buffer(const Device& device, std::size_t bytes, Memory memory = Memory::device,
            std::string_view remedy = usual_memory_remedy);
 
@@ -51,7 +51,7 @@ class Buffer {
         return values;
     }
 
-    // Of host memory: what lies in it now, without a copy.
+    // The present contents of host memory, without a copy.
     template <class Value>
     std::span<const Value> values(std::size_t count, std::size_t first_byte = 0) const {
         const std::span<const std::byte> bytes = mapped().subspan(first_byte, count * sizeof(Value));

@@ -1,4 +1,4 @@
-// What a device has compiled.
+// The kernels that a device has compiled.
 #pragma once
 
 #include "vulkan/pipeline_layout.hpp"
@@ -19,13 +19,13 @@ struct CompiledKernel {
     vk::raii::Pipeline pipeline{nullptr};
 };
 
-// Pipelines by all that they are made from. From any thread: who asks for one that another thread is making waits for
-// it, and others are made meanwhile.
+// Compiled pipelines by a key of all that they are made from. It may be called from any thread: a caller that asks for
+// a pipeline that another thread is making waits for it, and others are made meanwhile.
 class CompiledKernels {
   public:
     using Made = std::shared_ptr<const CompiledKernel>;
 
-    // The pipeline of `key`, by `make` where there is none. Throws what `make` throws, which the next call tries again.
+    // The pipeline of `key`, made by `make` if there is none. Throws what `make` throws; the next call tries again.
     Made get(const std::string& key, const std::function<CompiledKernel()>& make);
 
   private:

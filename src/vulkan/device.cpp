@@ -29,7 +29,7 @@ namespace {
 constexpr std::array structure_extensions = {VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
                                              VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME};
 
-// In the order of preference.
+// Names of the device types in the order of preference.
 constexpr std::array<std::string_view, 5> type_names = {"discrete GPU", "integrated GPU", "virtual GPU", "CPU",
                                                         "other"};
 
@@ -52,7 +52,7 @@ std::size_t rank_of(const DeviceReport& report) {
     return static_cast<std::size_t>(std::ranges::find(type_names, report.type) - type_names.begin());
 }
 
-// The first family that computes and counts time.
+// The first queue family that supports compute and timestamps.
 std::optional<std::uint32_t> compute_family(const vk::raii::PhysicalDevice& device) {
     const auto families = device.getQueueFamilyProperties();
     for (std::uint32_t family = 0; family < families.size(); ++family) {
@@ -87,7 +87,7 @@ DeviceReport examine(const vk::raii::PhysicalDevice& device, int index) {
     require(compute_family(device).has_value(), "a compute queue with timestamps");
     if (basic.apiVersion < api_version) {
         report.lacking.push_back(fmt::format("Vulkan 1.2 (it offers {})", report.api_version));
-        return report; // what follows cannot be asked of it
+        return report; // the further properties need Vulkan 1.2
     }
 
     const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
@@ -157,7 +157,7 @@ std::string lower(std::string text) {
     return text;
 }
 
-// An index that a device has; any other text is part of a name ("4090").
+// True if the selector names the device: an index that a device has, or else a part of the name ("4090").
 bool matches(const DeviceReport& report, std::string_view selector, std::size_t device_count) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(selector.data(), selector.data() + selector.size(), index);
@@ -167,7 +167,7 @@ bool matches(const DeviceReport& report, std::string_view selector, std::size_t 
     return lower(report.name).find(lower(std::string(selector))) != std::string::npos;
 }
 
-// Device, driver and the driver's build.
+// Name of the cached pipelines: by device, driver and the driver's build.
 std::string pipelines_name(const vk::raii::PhysicalDevice& device) {
     const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
     const auto& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
@@ -236,13 +236,13 @@ struct Device::State {
     State(const State&) = delete;
     State& operator=(const State&) = delete;
     ~State() {
-        // What the driver has compiled besides what was read.
+        // Saves the pipelines that the driver has compiled besides those that were read.
         try {
             if (*pipelines && pipelines.getData().size() != pipelines_read) {
                 const auto data = pipelines.getData();
                 write_cached(pipelines_name, std::as_bytes(std::span(data)));
             }
-        } catch (const std::exception&) { // compiling again is all it costs
+        } catch (const std::exception&) { // without the cache they are only compiled again
         }
     }
 
@@ -254,19 +254,19 @@ struct Device::State {
         vk::raii::Queue queue;
         std::mutex submitting;
     };
-    // Of a lane; those that the device offers no queue for share the last.
+    // The queue of a lane; lanes for which the device offers no queue share the last one.
     Queue& queue_of(Lane lane) { return queues[std::min(static_cast<std::size_t>(lane), queues.size() - 1)]; }
 
     std::deque<Queue> queues;
     vk::raii::PipelineCache pipelines{nullptr};
     CompiledKernels kernels;
-    std::string pipelines_name;     // of this device and driver
+    std::string pipelines_name;     // name of the cache for this device and driver
     std::size_t pipelines_read = 0; // bytes
     std::uint32_t queue_family = 0;
     double timestamp_period = 0; // s
     std::uint32_t timestamp_bits = 64;
     vk::PhysicalDeviceMemoryProperties memory;
-    std::atomic<std::int64_t> taken{0}; // bytes, by buffers
+    std::atomic<std::int64_t> taken{0}; // bytes taken by buffers
     std::atomic<std::int64_t> most_taken{0};
     DeviceReport report;
     std::string choice;
@@ -292,7 +292,7 @@ std::vector<std::size_t> choose_devices(std::span<const DeviceReport> reports, c
     if (selector.find(',') == std::string::npos || std::ranges::any_of(reports, is_one)) {
         return {one_device(reports, selector)};
     }
-    std::istringstream names(selector + ","); // the last one too may be missing
+    std::istringstream names(selector + ","); // the comma makes a missing last name count too
     for (std::string name; std::getline(names, name, ',');) {
         const auto begin = name.find_first_not_of(' ');
         name = begin == std::string::npos ? "" : name.substr(begin, name.find_last_not_of(' ') - begin + 1);
@@ -360,7 +360,7 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
     } else {
         chain.unlink<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>();
     }
-    const std::array<float, 2> priorities = {0.5F, 1.0F}; // evaluation, far shorter, goes first
+    const std::array<float, 2> priorities = {0.5F, 1.0F}; // evaluation, which takes far less time, goes first
     const std::uint32_t queues =
         std::min<std::uint32_t>(static_cast<std::uint32_t>(priorities.size()),
                                 state.physical.getQueueFamilyProperties()[state.queue_family].queueCount);
@@ -385,7 +385,7 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
     const std::vector<std::byte> pipelines = read_cached(state.pipelines_name);
     state.pipelines_read = pipelines.size();
     try {
-        // The driver checks that it wrote them itself.
+        // The driver checks that it wrote the data itself.
         state.pipelines =
             vk::raii::PipelineCache(state.device, vk::PipelineCacheCreateInfo({}, pipelines.size(), pipelines.data()));
     } catch (const vk::SystemError& error) {
@@ -431,7 +431,7 @@ std::uint32_t Device::queue_family() const {
     return state_->queue_family;
 }
 double Device::seconds_between(std::uint64_t first, std::uint64_t second) const {
-    // The difference's highest valid bit is its sign.
+    // The highest valid bit of the difference is its sign.
     const std::uint32_t unused = 64U - state_->timestamp_bits;
     const auto ticks = static_cast<std::int64_t>((second - first) << unused) >> unused;
     return static_cast<double>(ticks) * state_->timestamp_period;
@@ -464,7 +464,7 @@ struct KeptDevices {
     std::mutex changing;
     std::map<std::string, OpenedDevice> by_selector;
 };
-std::unique_ptr<KeptDevices> kept_devices; // of a DeviceScope
+std::unique_ptr<KeptDevices> kept_devices; // devices of the DeviceScope
 
 } // namespace
 

@@ -17,7 +17,7 @@ namespace vkfv::vulkan {
 
 namespace {
 
-// The transform's kernels as VkFFT writes them down, by all that they depend on.
+// Name of the transform's kernels in the cache, as VkFFT saves them, by all that they depend on.
 std::string kept_name(const Device& device, int columns, int rows, int planes, FourierPlanes::Direction direction) {
     const DeviceReport& report = device.report();
     return "fourier-" +
@@ -87,7 +87,7 @@ FourierPlanes::FourierPlanes(const Device& device, const Buffer& buffer, int col
     configuration.makeForwardPlanOnly = direction == Direction::forward ? 1 : 0;
     configuration.makeInversePlanOnly = direction == Direction::inverse ? 1 : 0;
 
-    // Held to the end: who needs the same kernels finds them kept.
+    // The queue is held to the end: another caller that needs the same kernels then finds them in the cache.
     const auto held = device.hold_queue();
     state.queue = held.queue;
     const std::string name = kept_name(device, columns, rows, planes, direction);

@@ -8,10 +8,10 @@
 
 namespace vkfv::vulkan {
 
-// Of `planes` planes of columns x rows numbers (real, imaginary), one after the other at the buffer's beginning, in
-// place and without a factor: forward with exp(-2 pi i ...), or its inverse. Any size; quick for products of primes up
-// to 13. Its kernels are made when it is constructed, and kept on disk as pipelines are. Throws RunError where the
-// library fails. Device and buffer must outlive it.
+// The transform of `planes` planes of columns x rows numbers (real, imaginary), one after the other at the buffer's
+// beginning, in place and without a factor: forward with exp(-2 pi i ...), or its inverse. Any size; fast for products
+// of primes up to 13. Its kernels are made on construction, and saved to disk as pipelines are. Throws RunError where
+// the library fails. Device and buffer must outlive it.
 class FourierPlanes {
   public:
     enum class Direction { forward, inverse };
@@ -27,7 +27,7 @@ class FourierPlanes {
     std::unique_ptr<State> state_;
 };
 
-// "VkFFT 1.2.26": the bits of a transform are its.
+// The library's name, "VkFFT 1.2.26", on which the bits of a transform depend.
 std::string fourier_library();
 
 } // namespace vkfv::vulkan

@@ -15,11 +15,12 @@ namespace vkfv::vulkan {
 
 namespace {
 
-// Mesa puts every call of a kernel in its place before it looks at constants. With tens of surfaces that may or may not
-// be there this takes half a minute at every start, as only what comes of it is kept.
+// Kernels with at least so many constants are specialised before the driver compiles them. Mesa inlines every call of a
+// kernel before it looks at constants: with tens of optional surfaces this takes half a minute at every start, as only
+// the result is cached.
 constexpr std::size_t constants_to_put_in = 100;
 
-// Throws vk::SystemError.
+// Compiles a pipeline. Throws vk::SystemError.
 CompiledKernel compile(const Device& device, std::span<const std::uint32_t> spirv,
                        std::span<const BindingDeclaration> bindings, std::uint32_t push_constant_bytes,
                        std::span<const SpecializationConstant> constants) {
@@ -55,7 +56,7 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
                                           device.report().name, name_));
         }
     }
-    // The sizes tell where a list ends and the next begins.
+    // The sizes separate one list from the next in the digest.
     const std::array<std::size_t, 4> sizes = {spirv.size(), bindings.size(), constants.size(), push_constant_bytes};
     const std::string key = Digest()
                                 .add_values(std::span<const std::size_t>(sizes))
@@ -150,7 +151,7 @@ void Commands::timestamp() {
 Commands::~Commands() {
     try {
         wait();
-    } catch (const std::exception&) { // of a lost device nothing works on
+    } catch (const std::exception&) { // no work is done on a lost device
     }
 }
 
@@ -178,7 +179,7 @@ void Commands::wait() {
     }
     try {
         const vk::Fence fence = *done_;
-        // Without a limit the wait ends in success or throws.
+        // The wait has no time limit, so that it ends in success or throws.
         static_cast<void>(device_->handle().waitForFences(fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()));
         waited_ = true;
     } catch (const vk::SystemError& error) {

@@ -1,4 +1,4 @@
-// Compute kernels, what they are bound to, and the recording of their dispatches.
+// Compute kernels, their bindings, and the recording of their dispatches.
 #pragma once
 
 #include "vulkan/compiled_kernels.hpp"
@@ -14,7 +14,7 @@
 namespace vkfv::vulkan {
 
 // A compute pipeline with push descriptors in set 0 and push constants at offset 0. A device compiles a kernel once:
-// those of the same code, bindings and constants share one pipeline, which it keeps until it closes.
+// kernels of the same code, bindings and constants share one pipeline, which it keeps until it closes.
 class Kernel {
   public:
     Kernel(const Device& device, std::string name, std::span<const std::uint32_t> spirv,
@@ -30,9 +30,9 @@ class Kernel {
     std::shared_ptr<const CompiledKernel> compiled_;
 };
 
-// Workgroups for so many places (at least 1), in rows where a dispatch may not hold them in one. The last row may reach
+// Workgroups for so many places (at least 1), in rows where a dispatch cannot hold them in one. The last row may reach
 // beyond the places.
-inline constexpr std::uint32_t most_groups_in_a_row = 65535; // Vulkan's promise
+inline constexpr std::uint32_t most_groups_in_a_row = 65535; // guaranteed by Vulkan
 struct Groups {
     std::uint32_t x;
     std::uint32_t y;
@@ -43,18 +43,19 @@ inline Groups groups_of(std::uint64_t places, std::uint32_t workgroup) {
     return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows)};
 }
 
-// Commands recorded once and submitted. All barriers are made here: one stands before the first command and one after
-// the last, those between are the caller's barrier(). Submissions to one lane of a device work one after the other.
+// Commands recorded once and submitted. All barriers are made here: one is placed before the first command and one
+// after the last; the caller places those between by barrier(). Submissions to one lane of a device run one after the
+// other.
 class Commands {
   public:
     explicit Commands(const Device& device, std::uint32_t timestamp_capacity = 0,
                       Device::Lane lane = Device::Lane::trace);
-    // Waits for what was submitted.
+    // Waits for the submitted commands.
     ~Commands();
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
 
-    // Bindings and push constants are those that the kernel declares: throws as PipelineLayout::bind().
+    // Bindings and push constants must be those that the kernel declares: throws as PipelineLayout::bind().
     void dispatch(const Kernel& kernel, std::span<const Binding> bindings, std::span<const std::byte> push_constants,
                   std::uint32_t groups_x, std::uint32_t groups_y = 1);
     template <class Push>
@@ -70,10 +71,10 @@ class Commands {
     void barrier();
     void timestamp(); // the k-th call is seconds()[k]
 
-    // For what has no function here.
+    // The command buffer, for commands that have no function here.
     const vk::raii::CommandBuffer& handle() const { return buffers_.front(); }
 
-    // Both throw RunError if the device is lost. submit() may be called once, from any thread.
+    // submit() and wait() throw RunError if the device is lost. submit() may be called once, from any thread.
     void submit();
     void wait();
     void submit_and_wait() {
@@ -81,7 +82,7 @@ class Commands {
         wait();
     }
     std::vector<double> seconds() const;      // timestamps since the first, s; waits for them
-    std::vector<std::uint64_t> ticks() const; // the same on the device's own clock, in its timestamp periods
+    std::vector<std::uint64_t> ticks() const; // in timestamp periods of the device's own clock; waits for them
 
   private:
     const Device* device_;
@@ -89,7 +90,7 @@ class Commands {
     vk::raii::CommandBuffers buffers_{nullptr};
     vk::raii::QueryPool queries_{nullptr};
     vk::raii::Fence done_{nullptr};
-    bool waited_ = false; // for it
+    bool waited_ = false; // true: done_ has been waited for
     Device::Lane lane_;
     std::uint32_t timestamp_capacity_;
     std::uint32_t timestamps_ = 0;

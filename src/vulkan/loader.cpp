@@ -58,12 +58,12 @@ constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
 VKAPI_ATTR VkBool32 VKAPI_CALL on_validation_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                      VkDebugUtilsMessageTypeFlagsEXT,
                                                      const VkDebugUtilsMessengerCallbackDataEXT* data, void*) {
-    // Not thrown: the frames above are the layer's, in C.
+    // An exception must not pass through the frames above, which are the layer's, in C.
     std::fprintf(stderr, "Vulkan validation: %s\n", data->pMessage);
     std::abort();
 }
 
-// Messages of the loader ("general") are not the program's: a broken driver beside a good one gives some.
+// Messages of the loader ("general") are not reported: a broken driver beside a good one causes some.
 vk::DebugUtilsMessengerCreateInfoEXT messenger_info() {
     VkDebugUtilsMessengerCreateInfoEXT info{};
     info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
@@ -100,8 +100,7 @@ vk::raii::Instance make_instance(const vk::raii::Context& context) {
     try {
         vk::raii::Instance instance(context, info);
 #ifdef VKFV_VALIDATION
-        // Kept for good: the leak sanitizer knows what it finds by the library, and only while that is
-        // loaded.
+        // The library stays loaded: the leak sanitizer identifies leaks by library, and only while it is loaded.
         dlopen("libVkLayer_khronos_validation.so", RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
 #endif
         return instance;
@@ -122,7 +121,7 @@ bool loader_is_kept = false;
 } // namespace
 
 #if defined(VKFV_VALIDATION) && defined(__SANITIZE_ADDRESS__)
-// The layer's synchronisation validation leaks some kilobytes of its own, and so does VkFFT where it writes kernels.
+// The layer's synchronisation validation leaks some kilobytes, and so does VkFFT where it writes kernels.
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libVkLayer_khronos_validation.so\nleak:initializeVkFFT\n";
 }

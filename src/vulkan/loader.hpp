@@ -22,13 +22,13 @@ struct Loader {
 #endif
 };
 
-// That of the other devices, as long as there are any.
+// The loader that open devices share, as long as there are any; else a new one.
 std::shared_ptr<const Loader> open_drivers();
 
-// Throws DeviceError when there is none.
+// The physical devices. Throws DeviceError when there are none.
 std::vector<vk::raii::PhysicalDevice> physical_devices(const vk::raii::Instance& instance);
 
-// What in the environment keeps drivers from the loader, as a sentence; empty when nothing does.
+// A sentence that names what in the environment keeps drivers from the loader; empty when nothing does.
 std::string driver_selection();
 
 } // namespace vkfv::vulkan

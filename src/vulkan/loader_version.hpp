@@ -6,7 +6,7 @@
 
 namespace vkfv::vulkan {
 
-// "1.3.239"; none where there is no loader.
+// The version of the loader, "1.3.239"; none where there is no loader.
 std::optional<std::string> loader_version();
 
 } // namespace vkfv::vulkan

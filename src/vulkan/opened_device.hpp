@@ -1,4 +1,4 @@
-// A device that a thread opens meanwhile.
+// A device that a thread opens in the background.
 #pragma once
 
 #include <future>
@@ -9,7 +9,7 @@ namespace vkfv::vulkan {
 class Device;
 struct DeviceOptions;
 
-// Asked for its device, it throws what Device's constructor throws.
+// get() throws what Device's constructor throws.
 using OpenedDevice = std::shared_future<std::shared_ptr<const Device>>;
 
 OpenedDevice begin_to_open(const DeviceOptions& options);

@@ -12,7 +12,7 @@ namespace vkfv::vulkan {
 
 namespace {
 
-// Every Vulkan device grants so many; more would run here and fail elsewhere.
+// Every Vulkan device supports this number; a larger one would run here and fail elsewhere.
 constexpr std::uint32_t portable_push_constant_bytes = 128;
 
 vk::DescriptorType type_of(BindingKind kind) {
@@ -48,7 +48,7 @@ void check_range(const Device& device, std::string_view name, const BindingDecla
     }
 }
 
-// The bytes of a buffer that a binding names.
+// The part of a buffer that a binding names.
 vk::DescriptorBufferInfo range_of(const Device& device, std::string_view name, const BindingDeclaration& declaration,
                                   const Binding& binding, const Buffer& buffer) {
     const std::size_t all = buffer.bytes();
@@ -60,7 +60,7 @@ vk::DescriptorBufferInfo range_of(const Device& device, std::string_view name, c
                                            declaration.slot, bytes, binding.first_byte, all));
     }
     check_range(device, name, declaration, bytes);
-    // Without its padding, so that a run-time array's length() is right.
+    // The range leaves out the padding, so that a run-time array's length() is right.
     return {buffer.handle(), binding.first_byte, bytes > 0 ? bytes : VK_WHOLE_SIZE};
 }
 
@@ -101,7 +101,7 @@ void PipelineLayout::bind(const Device& device, const vk::raii::CommandBuffer& c
             fmt::format("kernel {}: {} bindings, expected {}", name, bindings.size(), declarations_.size()));
     }
     const std::size_t count = bindings.size();
-    // The writes point into these: no growth after this.
+    // The writes point into these lists, which must not grow afterwards.
     std::vector<vk::DescriptorBufferInfo> buffers(count);
     std::vector<vk::AccelerationStructureKHR> structures(count);
     std::vector<vk::WriteDescriptorSetAccelerationStructureKHR> structure_writes(count);

@@ -18,12 +18,12 @@ namespace vkfv::vulkan {
 struct Binding {
     std::uint32_t slot;
     std::variant<const Buffer*, const AccelerationStructure*> resource;
-    // A part of a buffer has bytes above 0, and begins at first_byte, a multiple of binding_alignment; else it is all
-    // of it.
+    // bytes > 0: the part of the buffer that begins at first_byte, a multiple of binding_alignment; 0: the whole
+    // buffer.
     std::size_t first_byte = 0;
     std::size_t bytes = 0;
 };
-inline constexpr std::size_t binding_alignment = 256; // Vulkan asks for no more
+inline constexpr std::size_t binding_alignment = 256; // largest alignment that Vulkan may require
 
 enum class BindingKind { storage_buffer, uniform_buffer, acceleration_structure };
 
@@ -35,17 +35,17 @@ struct BindingDeclaration {
 class PipelineLayout {
   public:
     PipelineLayout() = default;
-    // stages: those that see the bindings and the push constants, whose bytes are a multiple of 4, at most 128, which
-    // every device grants (throws std::logic_error otherwise). Throws vk::SystemError.
+    // stages: stages that see the bindings and the push constants. The size of the push constants is a multiple of 4
+    // and at most 128, which every device supports (throws std::logic_error otherwise). Throws vk::SystemError.
     PipelineLayout(const Device& device, std::vector<BindingDeclaration> declarations,
                    std::uint32_t push_constant_bytes, vk::ShaderStageFlags stages);
 
     vk::PipelineLayout handle() const { return *layout_; }
 
-    // Binds what the next command of a pipeline with this layout takes; name: of that pipeline, for errors. The
-    // bindings must name every slot that is declared, and the push constants have the declared size (throws
+    // Binds the arguments of the next command of a pipeline with this layout; name: of that pipeline, for errors. The
+    // bindings must name every declared slot, and the push constants must have the declared size (throws
     // std::logic_error otherwise). Throws DeviceError for a buffer larger than a descriptor may span on this device:
-    // reach that one by its address.
+    // such a buffer must be reached by its address.
     void bind(const Device& device, const vk::raii::CommandBuffer& commands, vk::PipelineBindPoint point,
               std::string_view name, std::span<const Binding> bindings,
               std::span<const std::byte> push_constants) const;

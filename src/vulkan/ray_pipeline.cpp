@@ -74,7 +74,7 @@ void RayPipeline::make(const RayStages& stages, std::vector<BindingDeclaration> 
     pipeline_ = vk::raii::Pipeline(device_->handle(), nullptr, device_->pipelines(), info);
 }
 
-// A table a group: each begins where the device wants one to begin.
+// Makes a table for each group of shaders: each begins at an address with the alignment that the device requires.
 void RayPipeline::make_table() {
     const auto properties =
         device_->physical()

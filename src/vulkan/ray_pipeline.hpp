@@ -1,5 +1,5 @@
-// Ray-tracing pipelines (VK_KHR_ray_tracing_pipeline): a ray generation shader, and what runs where its rays meet the
-// geometry of an acceleration structure.
+// Ray-tracing pipelines (VK_KHR_ray_tracing_pipeline): a ray generation shader, and the shaders that run where its rays
+// meet the geometry of an acceleration structure.
 #pragma once
 
 #include "vulkan/kernel.hpp"
@@ -17,10 +17,10 @@ struct RayStages {
     std::span<const std::uint32_t> generation;
     std::span<const std::uint32_t> miss;
     std::span<const std::uint32_t> closest_hit;
-    std::span<const std::uint32_t> intersection; // of boxes; empty: the geometry is triangles
+    std::span<const std::uint32_t> intersection; // for boxes; empty: the geometry is triangles
 };
 
-// Bound as a Kernel is. Its shaders trace rays from the generation stage alone.
+// A ray-tracing pipeline, bound as a Kernel is. Only its generation stage traces rays.
 class RayPipeline {
   public:
     // Throws DeviceError where the device was not opened for it (DeviceOptions::ray_pipelines) or does not compile it.
@@ -41,7 +41,7 @@ class RayPipeline {
     std::string name_;
     PipelineLayout layout_;
     vk::raii::Pipeline pipeline_{nullptr};
-    std::vector<Buffer> tables_; // of the groups of shaders: generation, miss, hit
+    std::vector<Buffer> tables_; // one for each group of shaders: generation, miss, hit
     std::array<vk::StridedDeviceAddressRegionKHR, 3> regions_;
 };
 

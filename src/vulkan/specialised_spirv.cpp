@@ -26,13 +26,14 @@ std::vector<std::uint32_t> specialised_spirv(std::span<const std::uint32_t> spir
         values.emplace(constant.id, std::vector{constant.value});
     }
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
-    // Warnings of what a pass leaves as it is, which the driver takes too; without a consumer they would be exceptions.
+    // Warnings about parts that a pass leaves unchanged are ignored, as the driver accepts these too; without a
+    // consumer they would be exceptions.
     optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
     optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
         .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
         .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
         .RegisterPass(spvtools::CreateUnifyConstantPass())
-        // First what does not run, by constants through all calls: then there is little to put in their places.
+        // Code that does not run is removed first, by constants through all calls: then there is little to inline.
         .RegisterPass(spvtools::CreateCCPPass())
         .RegisterPass(spvtools::CreateDeadBranchElimPass())
         .RegisterPass(spvtools::CreateAggressiveDCEPass())

@@ -1,4 +1,4 @@
-// Kernels whose constants are put in before a driver has them.
+// Specialises kernels by their constants before a driver compiles them.
 #pragma once
 
 #include <vulkan/vulkan.hpp>
@@ -25,8 +25,8 @@ class Specialization {
     std::vector<std::uint32_t> values_;
 };
 
-// The module with these constants in place: what they exclude is gone, and calls have become what they call. Each
-// operation that is left is as it was, so values and roundings are too. Empty if the module cannot be changed so.
+// The module with these constants in place: excluded code is removed, and calls are inlined. The remaining operations
+// are unchanged, so values and roundings are too. Empty if the module cannot be specialised in this way.
 std::vector<std::uint32_t> specialised_spirv(std::span<const std::uint32_t> spirv,
                                              std::span<const SpecializationConstant> constants);
 

@@ -1,19 +1,19 @@
-// The ABg model of scatter by polished surfaces, as programs of optical design know it (R. Pfisterer, "Approximated
+// The ABg model of scatter by polished surfaces, used by programs of optical design (R. Pfisterer, "Approximated
 // scatter models for stray light analysis", Opt. Photon. News 22 (10) (2011) 16):
 //   f = A / (B + d^g),
-// d the distance of the outgoing direction's cosines from the mirror direction's. A makes the integral of f cos(theta)
-// 1 at normal incidence, so that the lobe's weight is the total integrated scatter. Reciprocal; at other incidences the
-// part of the lobe that lies beyond the horizon is absorbed. What is not scattered is a lobe of mirror.
+// where d is the distance of the outgoing direction's cosines from the mirror direction's. A makes the integral of f
+// cos(theta) 1 at normal incidence, so that the lobe's weight is the total integrated scatter. The model is reciprocal;
+// at other incidences the part of the lobe beyond the horizon is absorbed. The unscattered light is a lobe of mirror.
 // parameter: abg_b, 1e-12, 1, 0.001, constant B: the lobe rolls off at the distance of direction cosines B^(1/g)
 // parameter: abg_g, 0.1, 8, 1.5, exponent g: the lobe falls with this power of that distance
 // absorbs
 // table
 
-// d^g
+// d^g, for a distance d > 0.
 VKFV_FUNCTION real abg_power(real abg_g, real distance) { return exp(abg_g * log(max(distance, real(1e-30)))); }
 
 // Proposals have the density 1 / B up to the roll-off and d^-g from there to 1, which is nowhere more than twice the
-// wanted one. y = -log(d), and y_0 is that of the roll-off.
+// wanted density. y = -log(d), and y_0 is its value at the roll-off.
 struct AbgProposal {
     real distance;
     real acceptance;
@@ -25,12 +25,12 @@ VKFV_FUNCTION AbgProposal abg_proposal(real abg_b, real abg_g, real u) {
     real inner = real(0.5) * exp(-q * y_0);
     real outer = even ? y_0 : -exp_minus_one(-q * y_0) / q;
     real place = u * (inner + outer);
-    real beyond = max(inner + outer - place, real(0.0)); // of the mass, between there and d = 1
+    real beyond = max(inner + outer - place, real(0.0)); // mass of the proposals between this place and d = 1
     real y = real(0.0);
     if (place < inner) {
         y = y_0 - real(0.5) * log(max(place / inner, real(1e-30)));
     } else {
-        // exp(-q y), by the end of the two at which its digits are not lost.
+        // exp(-q y) is taken from that end of the range at which its digits are not lost.
         bool far = q * beyond > real(0.25);
         real grown = far ? log(q * (place - inner) + exp(-q * y_0)) : log_one_plus(-q * beyond);
         y = even ? beyond : -grown / q;
@@ -58,7 +58,7 @@ VKFV_FUNCTION ScatterTry abg_try(real abg_b, real abg_g, Incidence incidence, re
     return result;
 }
 
-// The table has A.
+// The BSDF; A is table[0].
 VKFV_FUNCTION real abg_bsdf(real abg_b, real abg_g, real table[LOBE_TABLE_SIZE], Incidence incidence, real3 outgoing) {
     return table[0] / (abg_b + abg_power(abg_g, sqrt(cosines_apart_squared(incidence, outgoing))));
 }

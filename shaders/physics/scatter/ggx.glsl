@@ -3,8 +3,9 @@
 // that reflect everything, each ray once. With m the facets' normal, halfway between both directions,
 //   f = D(m) / (4 cos_i cos_o (1 + L_i + L_o)),   L = (sqrt(1 + alpha^2 tan^2(theta)) - 1) / 2,
 //   D = alpha^2 / (pi cos^4(theta_m) (alpha^2 + tan^2(theta_m))^2).
-// Reciprocal: f(i, o) = f(o, i). What other facets would catch is absorbed, as it is scattered but once: at normal
-// incidence 1 % with alpha = 0.1, 12 % with 0.3, 31 % with 0.5 and 69 % with 1; ggx_multiple_scatter.glsl keeps it.
+// The model is reciprocal: f(i, o) = f(o, i). Light that other facets would catch is absorbed, as it is scattered only
+// once. At normal incidence this is 1 % with alpha = 0.1, 12 % with 0.3, 31 % with 0.5 and 69 % with 1;
+// ggx_multiple_scatter.glsl keeps it.
 // parameter: alpha, 0.001, 1, 0.3, roughness: half of the surface's projected area is steeper than this slope
 // lossy
 
@@ -13,19 +14,19 @@ VKFV_FUNCTION real ggx_reach(real alpha, real cosine) {
     return sqrt(alpha * alpha + (real(1.0) - alpha) * (real(1.0) + alpha) * cosine * cosine);
 }
 
-// Facets as they are seen by the incoming light, by spherical caps: J. Dupuy and A. Benyoub, Computer Graphics Forum 42
-// (2023) 8. Of the light that they mirror, the share G_2 / G_1 gets away.
+// Facets are drawn as the incoming light sees them, by spherical caps: J. Dupuy and A. Benyoub, Computer Graphics Forum
+// 42 (2023) 8. The share G_2 / G_1 of the light that they mirror escapes.
 VKFV_FUNCTION ScatterTry ggx_try(real alpha, Incidence incidence, real u0, real u1, real u2) {
     real3 normal = incidence.normal;
     real incoming_cosine = -dot(incidence.incoming, normal);
-    // Stretched, facets are those of a hemisphere, and their normals halfway to the directions of a cap, which is
-    // uniform.
+    // In stretched space the facets are those of a hemisphere, and their normals lie halfway to the directions of a
+    // cap, which is uniform.
     real3 flat_part = (incidence.incoming + normal * incoming_cosine) * -alpha;
     real scale = real(1.0) / sqrt(dot(flat_part, flat_part) + incoming_cosine * incoming_cosine);
     flat_part = flat_part * scale;
     real cap = real(1.0) + incoming_cosine * scale;
     real left = (real(1.0) - u0) * cap;
-    // With the versine u0 * cap; left is what the sum of both has along the normal.
+    // The versine is u0 * cap; left is the component along the normal of the sum of both directions.
     real sine = sqrt(u0 * cap * (left + dot(flat_part, flat_part) / cap));
     Frame frame = frame_around(normal);
     Turn turn = turn_of(u1);
@@ -46,7 +47,7 @@ VKFV_FUNCTION ScatterTry ggx_try(real alpha, Incidence incidence, real u0, real 
 VKFV_FUNCTION real ggx_bsdf(real alpha, Incidence incidence, real3 outgoing) {
     real incoming_cosine = -dot(incidence.incoming, incidence.normal);
     real cosine = max(dot(outgoing, incidence.normal), real(0.0));
-    // Along the facets' normal, of any length; tan^2 = across / up^2 without the cancellation of 1 - cos^2.
+    // The facet's normal, of any length; tan^2 = across / up^2 avoids the cancellation of 1 - cos^2.
     real3 half_way = outgoing - incidence.incoming;
     real up = dot(half_way, incidence.normal);
     real3 flat_part = half_way - incidence.normal * up;

@@ -1,6 +1,6 @@
-// The facets of ggx, of a metal: each reflects as Fresnel's equations say for unpolarised light of an absorbing medium
-// (fresnel.glsl), at the angle that the light meets it by. Reciprocal. What other facets would catch is absorbed, as it
-// is by ggx.
+// The facets of ggx, of a metal: each reflects by Fresnel's equations for unpolarised light of an absorbing medium
+// (fresnel.glsl), at its angle of incidence. The model is reciprocal. Light that other facets would catch is absorbed,
+// as it is by ggx.
 // parameter: refractive_index, 0.01, 20, 0.22, real part n of the index, here that of gold at 0.59 um
 // parameter: extinction_coefficient, 0, 20, 3.05, imaginary part k of the index, here that of gold at 0.59 um
 // parameter: alpha, 0.001, 1, 0.3, roughness: half of the surface's projected area is steeper than this slope
@@ -17,7 +17,7 @@ VKFV_FUNCTION real ggx_conductor_reflectance(real refractive_index, real extinct
 
 VKFV_FUNCTION ScatterTry ggx_conductor_try(real refractive_index, real extinction_coefficient, real alpha,
                                            Incidence incidence, real u0, real u1, real u2) {
-    ScatterTry facet = ggx_try(alpha, incidence, u0, u1, real(0.0)); // whose direction does not depend on u2
+    ScatterTry facet = ggx_try(alpha, incidence, u0, u1, real(0.0)); // the direction does not depend on u2
     real reflectance = ggx_conductor_reflectance(refractive_index, extinction_coefficient, incidence, facet.direction);
     return ggx_try(alpha, incidence, u0, u1, u2 / max(reflectance, real(1e-30)));
 }

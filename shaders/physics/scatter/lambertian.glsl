@@ -1,7 +1,7 @@
 // Lambert's cosine law, J. H. Lambert, Photometria (1760): the same radiance in every direction, cos(theta_o) / pi.
 // ceiling
 
-// cos^2(theta_o) is uniform; 1 - sqrt(u) without its cancellation.
+// By the cosine law cos^2(theta_o) is uniform; 1 - sqrt(u) is formed without cancellation.
 VKFV_FUNCTION ScatterTry lambertian_try(Incidence incidence, real u0, real u1, real) {
     ScatterTry result;
     result.absorbed = false;

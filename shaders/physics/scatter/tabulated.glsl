@@ -1,20 +1,20 @@
-// A measured bsdf, isotropic: by the angle of incidence, the angle of scatter, and the azimuth between the outgoing
+// A measured isotropic BSDF by the angle of incidence, the angle of scatter, and the azimuth between the outgoing
 // direction and the mirror direction's (0 to 180 degrees, the same on either side). The host reads, checks and prepares
-// it in src/specimen/tabulated_bsdf.cpp. Linear between its angles; its integral of f cos(theta) over the hemisphere is
-// the share that is scattered, and the rest is absorbed. As reciprocal as the table is.
+// it in src/specimen/tabulated_bsdf.cpp. It is linear between its angles; its integral of f cos(theta) over the
+// hemisphere is the share that is scattered, and the rest is absorbed. It is as reciprocal as its table.
 // absorbs
 // table
 // drawn_by_table
 // numbers
 
-// Where the numbers of a table stand: its angles (rad), for each incidence the share that is kept and the mass of the
+// Places of a table's numbers: its angles (rad), for each incidence the share that is kept and the mass of the
 // proposals, the values f[incidence][scatter][azimuth], and for each incidence and cell [scatter][azimuth] the
-// proposals' mass of this and all cells before, over all of them.
+// cumulative mass of the proposals up to and including this cell, as a share of all.
 struct TabulatedLayout {
-    int incidences; // points of each angle, at least 2
+    int incidences; // number of points of each angle, at least 2
     int scatters;
     int azimuths;
-    int first_incidence; // places of the numbers
+    int first_incidence; // places of the first number of each kind
     int first_scatter;
     int first_azimuth;
     int first_kept;
@@ -38,10 +38,10 @@ VKFV_FUNCTION TabulatedLayout tabulated_layout(real table[LOBE_TABLE_SIZE]) {
     return places;
 }
 
-// Between two points of an ascending list.
+// A place between two points of an ascending list.
 struct TabulatedPlace {
     int point;
-    real share; // of the way to the next
+    real share; // fraction of the way to the next point
 };
 
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TabulatedPlace tabulated_place(VKFV_SCENE_PARAMETER int begin, int points,
@@ -64,7 +64,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TabulatedPlace tabulated_place(VKFV_SCENE_PARA
     return place;
 }
 
-// The bsdf at these angles of scatter and azimuth, for the incidence-th angle of incidence of the table.
+// The BSDF at these angles of scatter and azimuth, for the incidence-th angle of incidence of the table.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real tabulated_value(VKFV_SCENE_PARAMETER TabulatedLayout places, int incidence,
                                                        TabulatedPlace scatter, TabulatedPlace azimuth) {
     int corner = places.first_value + (incidence * places.scatters + scatter.point) * places.azimuths + azimuth.point;
@@ -87,7 +87,7 @@ VKFV_FUNCTION real3 tabulated_along(real3 direction, real3 normal) {
     return direction - normal * dot(direction, normal);
 }
 
-// From the normal, rad.
+// The angle between a direction and the normal, rad.
 VKFV_FUNCTION real tabulated_angle(real3 direction, real3 normal) {
     real3 along = tabulated_along(direction, normal);
     return atan(sqrt(dot(along, along)), dot(direction, normal));
@@ -108,7 +108,8 @@ VKFV_FUNCTION Frame tabulated_frame(Incidence incidence) {
     return frame;
 }
 
-// A cell is proposed with the mass of its largest value over it, and a direction in it evenly over f = 1.
+// Proposes a cell with the mass of its largest value over it, and a direction in it with constant density per projected
+// solid angle.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION ScatterTry tabulated_try(VKFV_SCENE_PARAMETER real table[LOBE_TABLE_SIZE],
                                                            Incidence incidence, real u0, real u1, real u2) {
     TabulatedLayout places = tabulated_layout(table);
@@ -148,12 +149,12 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION ScatterTry tabulated_try(VKFV_SCENE_PARAMETER 
     scatter.point = first / cells_across;
     TabulatedPlace azimuth;
     azimuth.point = first - scatter.point * cells_across;
-    // Both sides of the plane of incidence.
+    // The share across serves both sides of the plane of incidence.
     azimuth.share = abs(real(2.0) * across - real(1.0));
     real side = across < real(0.5) ? real(-1.0) : real(1.0);
     real start = material_number(VKFV_SCENE places.first_scatter + scatter.point);
     real stop = material_number(VKFV_SCENE places.first_scatter + scatter.point + 1);
-    // The square of the sine is even between those of both ends; the difference, without its cancellation.
+    // The squared sine is uniform between those of both ends; their difference is formed without cancellation.
     real low = sin(start);
     real sine = sqrt(low * low + u1 * sin(stop - start) * sin(stop + start));
     real cosine = sqrt(max(real(1.0) - sine * sine, real(0.0)));

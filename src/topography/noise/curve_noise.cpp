@@ -31,8 +31,8 @@ std::optional<double> place_of(const std::vector<double>& values, int at, const 
     return fit.found ? std::optional(fit.offset) : std::nullopt;
 }
 
-// The derivatives of a maximum's place by the values around it, for the Gaussian exp(-curvature (x - offset)^2 / 2)
-// over its value at 0.
+// The derivatives of a maximum's place by the values around it, for the Gaussian exp(-curvature (x - offset)^2 / 2),
+// normalised to its value at 0.
 std::vector<double> derivatives(double curvature, double offset, const PeakFinder& finder) {
     const int range = range_of(finder);
     std::vector<double> values;
@@ -56,7 +56,7 @@ double bend_of_index(int index, int count) {
     return least_bend * std::pow(most_bend / least_bend, static_cast<double>(index) / (count - 1));
 }
 
-// The curvature of the Gaussian through three values: bend = 2 - 2 exp(-c / 2) cosh(c x).
+// The curvature c of the Gaussian through three values, from bend = 2 - 2 exp(-c / 2) cosh(c x).
 double curvature_of(double bend, double offset) {
     double curvature = bend;
     const double rest = std::max(1e-3, 1 - bend / 2);
@@ -72,12 +72,12 @@ CurveNoise::CurveNoise(const TextureAndNoise& found, const std::vector<double>& 
                        int images)
     : found_(found), most_((images - 1) / std::sqrt(12.0)) {
     const int radius = static_cast<int>(axial_weights.size()) - 1, range = range_of(finder);
-    std::vector<double> weights; // of sum 1, from -radius
+    std::vector<double> weights; // normalised to the sum 1, from -radius
     for (const Share& share : axial_shares(axial_weights, 2 * radius, 4 * radius + 1)) {
         weights.push_back(static_cast<double>(share.weight));
     }
     const auto taps = static_cast<int>(weights.size());
-    std::vector<double> shared(weights.size()); // rho
+    std::vector<double> shared(weights.size()); // autocorrelation rho of the weights
     for (int lag = 0; lag < taps; ++lag) {
         for (int k = 0; k + lag < taps; ++k) {
             shared[static_cast<std::size_t>(lag)] +=
@@ -112,7 +112,7 @@ CurveNoise::CurveNoise(const TextureAndNoise& found, const std::vector<double>& 
             texture[at] = whole > 0 ? std::sqrt(here.share * energy[at] / whole) : 0;
             noise[at] = whole > 0 ? std::sqrt((1 - here.share) / whole) : 0;
         }
-        // The averaged curve's values, and their covariances over v, at -range ... range.
+        // The averaged curve's values at -range ... range, and their covariances over v.
         std::vector<double> averaged(static_cast<std::size_t>(points)),
             covariance(static_cast<std::size_t>(points * points));
         std::vector<double> half(static_cast<std::size_t>(points * side));
@@ -160,7 +160,7 @@ CurveNoise::CurveNoise(const TextureAndNoise& found, const std::vector<double>& 
         by_share_.push_back(here);
     }
     simulate(axial_weights, finder);
-    // N = (1 - q) F^2, and the averaged curve's largest value is L(q) F.
+    // The noise energy is N = (1 - q) F^2, and the averaged curve's largest value is L(q) F.
     const double whole = found.variance * kept_ * found.noise_energy / std::max(1e-6, 1 - found.share);
     bend_variance_ = found.bend_variance;
     if (whole > 0) {
@@ -244,7 +244,7 @@ CurveNoise::Simulated CurveNoise::simulated_at(double linear) const {
         result.bend_variance *= less;
         return result;
     }
-    if (linear >= simulated_.back().linear) { // the place does not scatter further
+    if (linear >= simulated_.back().linear) { // the place cannot scatter further
         Simulated result = simulated_.back();
         result.factor *= result.linear / linear;
         return result;
@@ -258,7 +258,7 @@ CurveNoise::Simulated CurveNoise::simulated_at(double linear) const {
             .bend_variance = std::lerp(before->bend_variance, after->bend_variance, rest)};
 }
 
-// A curve of the stack's own width under noise that both averages have correlated, over and over.
+// Simulates a curve of the stack's own width many times, under noise that both averages have correlated.
 void CurveNoise::simulate(const std::vector<double>& axial_weights, const PeakFinder& finder) {
     constexpr int samples = 400, most_reach = 200, levels = 12;
     const double bend = at_share(found_.share, [](const OfShare& here) { return here.bend; });
@@ -314,7 +314,7 @@ void CurveNoise::simulate(const std::vector<double>& axial_weights, const PeakFi
             .variance = squares / of, .bend = mean, .bend_variance = std::max(0.0, sum_squares / of - mean * mean)};
     };
     constexpr double little = 1e-4;
-    const Found without = found_at(0); // methods have their own errors
+    const Found without = found_at(0); // the place without noise, as methods have their own errors
     const double unit = std::sqrt(std::max(0.0, found_at(little).variance - without.variance)) / little;
     if (!(unit > 0)) {
         return;

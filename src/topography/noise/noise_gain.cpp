@@ -11,7 +11,7 @@
 namespace vkfv::topography {
 namespace {
 
-// sum over p of a(p) b(p + d) along one axis, |d| <= 2 mask_reach.
+// The overlap of two masks along one axis: sum over p of a(p) b(p + d), |d| <= 2 mask_reach.
 double overlap(const std::array<double, 5>& a, const std::array<double, 5>& b, int d) {
     double sum = 0;
     for (int p = std::max(0, -d); p < std::min(5, 5 - d); ++p) {
@@ -20,7 +20,7 @@ double overlap(const std::array<double, 5>& a, const std::array<double, 5>& b, i
     return sum;
 }
 
-// R_ab(k).
+// The covariance R_ab(k) of two masks' responses (noise_gain.hpp).
 double covariance(const Mask& a, const Mask& b, int kx, int ky, const NoiseCorrelation& correlation) {
     constexpr int most = 2 * mask_reach;
     double sum = 0;
@@ -54,7 +54,7 @@ double noise_gain(FocusMeasure measure, double window_pixels, const NoiseCorrela
             }
         }
     }
-    // A correlation that no noise has may leave a response no energy.
+    // A correlation that no noise can have may leave a response no energy.
     const double variance = signs ? sum : energy > 0 ? sum / energy : 0;
     return std::sqrt(std::max(0.0, variance) / window_pixels);
 }

@@ -1,4 +1,4 @@
-// How much of the images' noise a focus measure has.
+// The factor by which a focus measure passes the images' noise.
 #pragma once
 
 #include "topography/focus_measure.hpp"
@@ -9,9 +9,8 @@
 
 namespace vkfv::topography {
 
-// Autocorrelation r of the noise of an image's pixels, in pixels along x and y: r(0, 0) = 1, r(-k) = r(k), 0 beyond
-// the reach. Whatever blurs an image after its noise arose (pupil filter, Airy pattern, demosaicing) correlates
-// neighbours.
+// Autocorrelation r of the noise of an image's pixels, in pixels along x and y: r(0, 0) = 1, r(-k) = r(k), 0 beyond the
+// reach. Any blur of an image after its noise arose (pupil filter, Airy pattern, demosaicing) correlates neighbours.
 class NoiseCorrelation {
   public:
     static constexpr int reach = 4;
@@ -22,11 +21,11 @@ class NoiseCorrelation {
         const bool inside = dx >= -reach && dx <= reach && dy >= -reach && dy <= reach;
         return inside ? values_[index(dx, dy)] : 0;
     }
-    // Whether any pixels beside each other are correlated.
+    // True if any neighbouring pixels are correlated.
     bool neighbours() const {
         return std::ranges::count_if(values_, [](double value) { return value != 0; }) > 1;
     }
-    // Of both signs; within the reach.
+    // Sets the correlation at (dx, dy) and (-dx, -dy), within the reach.
     void set(int dx, int dy, double value) { values_[index(dx, dy)] = values_[index(-dx, -dy)] = value; }
 
   private:
@@ -37,8 +36,8 @@ class NoiseCorrelation {
 };
 
 // Standard deviation of the measure over a window of n pixels, for image noise of relative standard deviation 1 in
-// every pixel and of this correlation, beside stronger texture of the same spectrum: white light on the specimen
-// that is blurred as the noise is. Noise passes linearly for small values. Narrow windows average less of what
+// every pixel and of this correlation, beside stronger texture of the same spectrum: white light on the specimen that
+// is blurred as the noise is. Noise passes linearly for small values. Narrow windows average less of the noise that
 // correlates between pixels, and have up to a fifth less.
 //
 // With the measure's masks a, b, ... (which respond with the energy sum over a of (a * image)^2) and the covariance

@@ -13,7 +13,7 @@ double smallest_quarter(std::vector<double> values) {
 
 std::vector<int> quiet_images(const std::vector<double>& variances, bool all) {
     constexpr int apart = 3;
-    constexpr double most = 3; // of the smallest quarter's limit, which noise hardly reaches
+    constexpr double most = 3; // multiple of the smallest quarter's limit, which noise hardly reaches
     const int count = static_cast<int>(variances.size());
     const auto at = [&](int k) { return variances[static_cast<std::size_t>(k)]; };
     std::vector<double> around;

@@ -16,8 +16,8 @@ namespace vkfv::topography {
 
 namespace {
 
-// Sums that a probe tells at one distance from its maximum, over the square of the energy at the maximum, since noise
-// makes the variance of a height in this proportion.
+// Sums from a probe at one distance from its maximum, over the square of the energy at the maximum, since noise
+// contributes to the variance of a height in this proportion.
 struct Sums {
     double energy = 0;
     double beside = 0;
@@ -25,10 +25,10 @@ struct Sums {
 };
 
 struct TextureOfProbe {
-    std::vector<Sums> sums{}; // by the distance
+    std::vector<Sums> sums{}; // by distance from the maximum
     double bend = 0;
     double variance = 0;
-    double noise_share = 0; // of the energy at the maximum
+    double noise_share = 0; // share of the energy at the maximum
     bool found = false;
 };
 
@@ -44,7 +44,7 @@ double kept_by(const std::vector<double>& axial_weights) {
 
 constexpr std::size_t least_probes = 9, patches_a_probe = 4, partners = 8;
 
-// Finds the energy that noise alone has, and the variance of the measure by it.
+// Finds the energy of noise alone, and the variance of the measure by it.
 void find_noise(const WindowResponses& responses, const std::vector<std::vector<double>>& noise,
                 TextureAndNoise& result) {
     double pairs = 0, squares = 0;
@@ -52,7 +52,7 @@ void find_noise(const WindowResponses& responses, const std::vector<std::vector<
         result.noise_energy += responses.energy(noise[k]) / static_cast<double>(noise.size());
         const auto slopes = responses.slopes(noise[k]);
         for (std::size_t partner = 1; partner <= partners / 2; ++partner) {
-            constexpr std::size_t apart = 7 * patches_a_probe; // patches of one probe follow each other
+            constexpr std::size_t apart = 7 * patches_a_probe; // skips the consecutive patches of one probe
             squares += std::pow(responses.product(slopes, noise[(k + apart * partner + 1) % noise.size()]), 2);
             pairs += 1;
         }
@@ -60,7 +60,7 @@ void find_noise(const WindowResponses& responses, const std::vector<std::vector<
     result.alone = 0.5 * squares / pairs / (responses.magnitudes() ? 1 : result.noise_energy);
 }
 
-// Adds up what all probes tell, for every distance of an image from the maximum; apart: images between two distances.
+// Averages the sums of all probes for every distance of an image from the maximum; apart: images between two distances.
 bool add_up(const std::vector<TextureOfProbe>& probes, int apart, TextureAndNoise& result) {
     std::vector<Sums> sums(probes.front().sums.size());
     double count = 0, bends = 0, squares = 0, noise_share = 0;
@@ -95,7 +95,7 @@ bool add_up(const std::vector<TextureOfProbe>& probes, int apart, TextureAndNois
     for (int image = 0; image <= apart * (static_cast<int>(sums.size()) - 1); ++image) {
         const auto before = static_cast<std::size_t>(image / apart);
         const std::size_t after = std::min(before + 1, energy.size() - 1);
-        // What fades as a Gaussian is straight by the square of the distance, in its logarithm.
+        // The logarithm of a Gaussian is linear in the squared distance, so this is interpolated.
         const double from = static_cast<double>(before) * apart, to = from + apart;
         const double rest = (image * image - from * from) / (to * to - from * from);
         const bool fades = energy[before] > 0 && energy[after] > 0;
@@ -166,7 +166,7 @@ std::vector<std::vector<double>> FocusProbes::noise_responses(const WindowRespon
         for (std::size_t m = 0; m < taken; ++m) {
             const int image = quiet[(2 * m + 1) * quiet.size() / (2 * taken)];
             const float* from = probe.values.data() + static_cast<std::size_t>(image) * values;
-            constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
+            constexpr double gain = 1 + 4 + 1; // factor of the second difference on the variance of independent values
             const double level = std::accumulate(from, from + values, 0.0) / static_cast<double>(values);
             const double deviation = std::sqrt(gain * model.variance(level));
             if (!(deviation > 0)) {
@@ -206,7 +206,7 @@ std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<
                                                               const NoiseModel& model,
                                                               const NoiseCorrelation& correlation) const {
     const WindowResponses responses(measure_, window_, channels_);
-    std::vector<std::size_t> places; // whose patch lies in the image
+    std::vector<std::size_t> places; // probes whose patch lies in the image
     for (std::size_t k = 0; k < probes_.size(); ++k) {
         if (probes_[k].columns == responses.patch_side() && probes_[k].rows == responses.patch_side()) {
             places.push_back(k);
@@ -215,7 +215,7 @@ std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<
     if (places.size() < least_probes || images_ < 3) {
         return std::nullopt;
     }
-    // Patches of wide windows overlap, and take long.
+    // Only some places are kept: patches of wide windows overlap, and take long.
     constexpr std::size_t most_pixels = std::size_t{1} << 17;
     const std::size_t kept_places =
         std::clamp<std::size_t>(most_pixels / probes_[places.front()].pixels(), 2 * least_probes, places.size());
@@ -236,7 +236,7 @@ std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<
     const int apart =
         std::max({1, static_cast<int>(std::lround(width / 2)), (reach + most_distances - 1) / most_distances});
     const int distances = (reach + apart - 1) / apart;
-    // Where nothing is averaged, noise would choose the maxima.
+    // If nothing is averaged, this average is used all the same, as noise would choose the maxima.
     const Means means =
         means_of(radius > 0 ? axial_weights : topography::axial_weights(topography::suitable_smoothing(width, images_)),
                  images_);
@@ -294,7 +294,7 @@ std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<
                     const auto slopes = responses.slopes(all);
                     const double square = responses.energy(all);
                     energy = std::max(0.0, square - noise_here);
-                    // The product holds the variance of F itself: times F^2, and less what noise alone adds.
+                    // The product contains the variance of F itself, times F^2; noise's own part is subtracted.
                     product = 0.5 * square *
                                   (beside(slopes, slopes) + beside(responses.slopes(one), responses.slopes(other))) -
                               noise_here * result.alone;

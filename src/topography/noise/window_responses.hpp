@@ -1,4 +1,4 @@
-// How the masks of a focus measure respond to a patch of an image.
+// Responses of the masks of a focus measure to a patch of an image.
 #pragma once
 
 #include "topography/focus_measure.hpp"
@@ -33,10 +33,10 @@ class WindowResponses {
     }
 
     int patch_side() const { return side_ + 2 * mask_reach; }
-    // Whether the measure adds magnitudes, not energies.
+    // True if the measure adds magnitudes, not energies.
     bool magnitudes() const { return magnitudes_; }
 
-    // patch: all channels, patch_side() squared pixels each.
+    // The responses to a patch. patch: all channels, patch_side() squared pixels each.
     std::vector<double> of(const std::vector<double>& patch) const {
         const auto side = static_cast<std::size_t>(patch_side());
         std::vector<double> result;
@@ -50,7 +50,7 @@ class WindowResponses {
         return result;
     }
 
-    // The weights that noise has in the measure: the responses, or their directions where magnitudes are added.
+    // The weights of noise in the measure: the responses, or their directions where magnitudes are added.
     std::vector<double> slopes(const std::vector<double>& responses) const {
         if (!magnitudes_) {
             return responses;
@@ -70,7 +70,8 @@ class WindowResponses {
         return result;
     }
 
-    // Window's mean of the product, summed over masks and channels: over the channels' number as the measure is.
+    // The window's mean of the product, summed over masks and channels, divided by the number of channels as in the
+    // measure.
     double product(const std::vector<double>& a, const std::vector<double>& b) const {
         double sum = 0;
         for (std::size_t field = 0; field < a.size(); field += weights_.size()) {
@@ -81,7 +82,7 @@ class WindowResponses {
         return sum / (magnitudes_ ? std::sqrt(channels_) : channels_);
     }
 
-    // Square of the measure.
+    // The square of the measure.
     double energy(const std::vector<double>& responses) const {
         if (!magnitudes_) {
             return product(responses, responses);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-// Of the heights from the surface around them; NaN where there is none.
+// Squared distances of the heights from the surface around them; NaN where there is none.
 Grid<double> squared_distances(const Grid<double>& height, const FocusWindow& reference) {
     const Grid<double> found = near_zero(height);
     Grid<double> squares(height.columns, height.rows, nothing);
@@ -37,7 +37,7 @@ Grid<double> squared_distances(const Grid<double>& height, const FocusWindow& re
     return squares;
 }
 
-// Weights along an axis; the middle one is that of the point.
+// Weights along an axis; the middle one is the point's.
 using Weights = std::vector<double>;
 
 Weights weights_of(const FocusWindow& window) {
@@ -66,14 +66,14 @@ Weights convolved(const Weights& a, const Weights& b) {
     return result;
 }
 
-// The sum of factor x(column) y(row) is the weight of a pixel.
+// A separable part of the weights: factor x(column) y(row).
 struct Product {
     double factor;
     Weights x;
     Weights y;
 };
 
-// sum over x of a(x) b(x + d), with the middles at 0.
+// The overlap of two lists of weights: sum over x of a(x) b(x + d), with the middles at 0.
 double overlap(const Weights& a, const Weights& b, int d) {
     const int radius = static_cast<int>(a.size() / 2), other = static_cast<int>(b.size() / 2);
     double sum = 0;
@@ -83,7 +83,7 @@ double overlap(const Weights& a, const Weights& b, int d) {
     return sum;
 }
 
-// <f>: the variance of the weighted sum of errors of this correlation and of variance 1.
+// <f>: the variance of the weighted sum of errors that have this correlation and variance 1.
 double variance_of(const std::vector<Product>& weights, const Grid<double>& correlation) {
     const int reach = correlation.columns / 2;
     double variance = 0;
@@ -190,7 +190,7 @@ Grid<double> height_uncertainty(const Grid<double>& height, const Grid<double>& 
                 const double known = by_noise.count > 0 ? by_noise.value() : 0;
                 const double rest = (around.count > 0 ? around : whole).value() - of_noise * known;
                 const double here = noise(column, row);
-                // NaN if neither is known.
+                // NaN if neither part is known.
                 uncertainty(column, row) =
                     std::isnan(rest)
                         ? here

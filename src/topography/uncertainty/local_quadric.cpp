@@ -9,7 +9,7 @@
 namespace vkfv::topography {
 namespace {
 
-// Powers of x and y of each term.
+// Powers of x and y in each term.
 constexpr std::array<std::pair<std::size_t, std::size_t>, 6> degrees = {
     std::pair{0, 0}, std::pair{1, 0}, std::pair{0, 1}, std::pair{2, 0}, std::pair{1, 1}, std::pair{0, 2}};
 
@@ -38,7 +38,7 @@ QuadricRow::QuadricRow(const Grid<double>& height, std::span<const double> weigh
 
 QuadricRow::Terms QuadricRow::factors_of(const std::array<std::array<double, powers>, powers>& moments) {
     // Cholesky's decomposition of the normal equations, whose right side is the first unit vector.
-    constexpr double least = 1e-6; // of a diagonal element: heights along a line tell no surface
+    constexpr double least = 1e-6; // least share of a diagonal element: heights along a line determine no surface
     std::array<Terms, terms> lower{};
     for (std::size_t i = 0; i < terms; ++i) {
         for (std::size_t j = 0; j <= i; ++j) {

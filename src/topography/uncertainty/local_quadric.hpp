@@ -9,21 +9,22 @@
 
 namespace vkfv::topography {
 
-// The surfaces around the points of one row after the other, of heights near zero (near_zero() of local_plane.hpp).
+// The surfaces around the points of a row, for one row after another, of heights near zero (near_zero() of
+// local_plane.hpp).
 class QuadricRow {
   public:
     // weights: of a row or column at this distance from the point, from 0 on, two at least; a height's weight is the
-    // product of both. Both must outlive this.
+    // product of both. height and weights must outlive this.
     QuadricRow(const Grid<double>& height, std::span<const double> weights);
 
     void move_to(int row);
-    // The height of the surface a x^2 + b x y + c y^2 + d x + e y + f of least squares at the point itself. NaN where
-    // the map does not reach as far as the weights, where its finite heights have less than half of the weight, and
-    // where they do not tell the surface. Of the row moved to.
+    // The height of the least-squares surface a x^2 + b x y + c y^2 + d x + e y + f at a point of the row moved to. NaN
+    // where the weights reach beyond the map, where its finite heights have less than half of the weight, and where
+    // they do not determine the surface.
     double middle(int column) const;
 
-    // Of finite heights all around, middle() is the sum of weight(x) weight(y) (constant + square (x^2 + y^2)) z, with
-    // x and y in pixels.
+    // If all heights around are finite, middle() is the sum of weight(x) weight(y) (constant + square (x^2 + y^2)) z,
+    // with x and y in pixels.
     struct Whole {
         double constant = 0;
         double square = 0;
@@ -39,7 +40,7 @@ class QuadricRow {
     };
     using Terms = std::array<double, terms>;
     // Factors on the sums of z, x z, y z, x x z, x y z, y y z whose total is the height at the point, for these moments
-    // of x^p y^q at [p][q]; NaN where these do not tell.
+    // of x^p y^q at [p][q]; NaN where these do not determine the surface.
     static Terms factors_of(const std::array<std::array<double, powers>, powers>& moments);
 
     double distance(int d) const { return d / static_cast<double>(weights_.size() - 1); }
@@ -48,7 +49,7 @@ class QuadricRow {
     std::span<const double> weights_;
     std::vector<Column> columns_;
     int row_ = 0;
-    double whole_ = 0; // weight of finite heights all around
+    double whole_ = 0; // total weight if all heights around are finite
     Terms of_whole_{};
 };
 

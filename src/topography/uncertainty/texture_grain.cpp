@@ -45,7 +45,7 @@ Grid<double> grain_correlation(const Channels& all_in_focus, FocusMeasure measur
     for (std::size_t k = 0; k < grains.values.size(); ++k) {
         grains.values[k] = around.values[k] > 0 ? responses.values[k] / static_cast<double>(around.values[k]) - 1 : 0;
     }
-    // Of both signs alike, so that half of the plane tells all.
+    // The correlation is even, so that half of the plane suffices.
     const auto along = parallel_list(reach + 1, [&](int dy) {
         std::vector<double> sums;
         for (int dx = -reach; dx <= reach; ++dx) {

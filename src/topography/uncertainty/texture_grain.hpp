@@ -1,4 +1,4 @@
-// How far the texture's grains reach.
+// The size of the texture's grains.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -6,10 +6,10 @@
 
 namespace vkfv::topography {
 
-// Correlation of the texture's strength, as the measure weighs it, of pixels (dx, dy) apart, in the image that is in
-// focus everywhere: at (dx + reach, dy + reach), with the reach of the window's width less one, 16 at most. Strength is
-// over its mean in three windows' width, so that a print that is stronger in one place than in another is no grain. 1
-// in the middle; 0 all around it where there is no texture. Large images tell it by their middle.
+// The correlation of the texture's strength, as the measure weights it, for pixels (dx, dy) apart, in the image that is
+// in focus everywhere: at (dx + reach, dy + reach), with the reach of the window's width less one, 16 at most. Strength
+// is divided by its mean over three windows' width, so that slow changes of texture are no grain. The value is 1 in the
+// middle, and 0 all around it where there is no texture. Of large images only the middle is used.
 Grid<double> grain_correlation(const Channels& all_in_focus, FocusMeasure measure, const FocusWindow& window);
 
 } // namespace vkfv::topography

@@ -24,13 +24,13 @@ namespace {
 
 constexpr std::uint32_t most_points_per_chunk = 32;
 constexpr std::uint32_t workgroup = 128;
-constexpr std::uint64_t most_paths = std::uint64_t{1} << 27; // a submission's; on slower devices its time decides
+constexpr std::uint64_t most_paths = std::uint64_t{1} << 27; // largest submission; on slower devices the pace limits it
 
 std::uint32_t pixel_count(const DeviceScene& scene) {
     return static_cast<std::uint32_t>(scene.instrument.detector_pixels().count());
 }
 
-// A kernel is bound to the sums of one randomisation.
+// The distance between the sums of two randomisations, aligned so that a kernel can be bound to one of them.
 std::size_t stride_of(std::size_t pixels) {
     constexpr std::size_t aligned = vulkan::binding_alignment / sizeof(std::uint64_t);
     return (pixels + aligned - 1) / aligned * aligned;
@@ -42,8 +42,8 @@ std::vector<vulkan::BindingDeclaration> declarations(const DeviceScene& scene) {
     return all;
 }
 
-// Mesa 22's software Vulkan (22.3.6 of Debian 12) crashes on kernels that look at the source's rim by itself. There all
-// of the source is looked at as one: the same image in the mean, with somewhat more noise.
+// Mesa 22's software Vulkan (22.3.6 of Debian 12) crashes on kernels that sample the source's rim by itself. There the
+// whole source is sampled as one: the same image on average, with somewhat more noise.
 physics::f64::BackwardOptics on_device(const vulkan::Device& device, physics::f64::BackwardOptics optics) {
     if (vulkan::is_software(device.report()) && device.report().driver.find("Mesa 22.") != std::string::npos) {
         optics.rim_period = 0;
@@ -53,7 +53,7 @@ physics::f64::BackwardOptics on_device(const vulkan::Device& device, physics::f6
 
 std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene,
                                                       const physics::f64::BackwardOptics& optics) {
-    // The way to the source is traced by a loop.
+    // The kernel traces the way to the source by a loop, so only the illumination's surfaces are constants.
     const auto& trains = scene.instrument.constants;
     auto all = scene.specialised ? scene.specialised_constants(trains.illumination_first, trains.illumination_count)
                                  : scene.kernel_constants();
@@ -152,7 +152,7 @@ class BackwardTracer final : public DeviceExposures {
   private:
     class Exposure;
 
-    // All that an exposure counts, with the light that is sorted for waves.
+    // All buffers of counts of an exposure, including the light that is sorted for waves.
     std::vector<const vulkan::Buffer*> counted() const {
         std::vector<const vulkan::Buffer*> buffers = scene_.light_buffers();
         buffers.push_back(&trace_.sums());
@@ -163,7 +163,7 @@ class BackwardTracer final : public DeviceExposures {
     optics::Instrument turned_;
     BackwardPlan plan_;
     DeviceScene scene_;
-    mutable std::vector<ExposureMemory> memories_; // prepare() writes that of the slot which its caller has alone
+    mutable std::vector<ExposureMemory> memories_; // prepare() writes its slot's memory, which its caller alone uses
     BackwardTrace trace_;
     BackwardAccounts accounts_;
     DeviceEstimate estimate_;
@@ -171,7 +171,7 @@ class BackwardTracer final : public DeviceExposures {
     mutable DispatchPace pace_;
 };
 
-// Its units are the chunks of one randomisation after the other.
+// The units of work are the chunks of one randomisation after the other.
 class BackwardTracer::Exposure final : public TracedExposure {
   public:
     Exposure(const BackwardTracer& tracer, std::size_t slot)
@@ -198,7 +198,7 @@ class BackwardTracer::Exposure final : public TracedExposure {
         work.wait();
         auto estimated = of.estimate.estimated(of.slot);
         Image image = tracer_.accounts_.image(std::move(estimated.pixels), estimated.power.value());
-        // Of the imaging train alone: who goes on to the source, no one counts.
+        // Only crossings of the imaging train are counted; continuations to the source are not.
         image.crossings = static_cast<double>(image.rays) * tracer_.turned_.constants.illumination_count;
         return image;
     }

@@ -1,4 +1,4 @@
-// The backward estimator on a device: every pixel's lattice of paths, in one kernel.
+// The backward estimator on a device: one kernel traces every pixel's lattice of paths.
 #pragma once
 
 #include "trace/device/device_exposures.hpp"
@@ -13,7 +13,7 @@ namespace vkfv::trace {
 
 class BackwardTrace {
   public:
-    // scene: of turned_round(instrument).
+    // scene: made of turned_round(instrument).
     BackwardTrace(const DeviceScene& scene, const physics::f64::BackwardOptics& optics, const BackwardPlan& plan,
                   const TraceOptions& options);
 
@@ -23,10 +23,10 @@ class BackwardTrace {
     void record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint32_t randomisation,
                 std::uint64_t first, std::uint32_t count) const;
 
-    // Of 64 bits: of each randomisation the pixels' sums, stride() numbers from one to the next.
+    // 64-bit sums of the pixels, randomisation after randomisation, stride() numbers from one to the next.
     const vulkan::Buffer& sums() const { return sums_; }
     std::size_t stride() const { return stride_; }
-    // Of all pixels, of one randomisation.
+    // The number of chunks of all pixels in one randomisation.
     std::uint64_t chunks() const { return chunks_; }
     std::uint32_t points_per_chunk() const { return points_per_chunk_; }
     std::uint32_t most_chunks_at_a_time() const { return most_chunks_at_a_time_; }
@@ -35,7 +35,7 @@ class BackwardTrace {
     const DeviceScene& scene_;
     std::uint32_t pixels_;
     std::size_t stride_;
-    std::uint32_t points_per_chunk_; // of one invocation; the plan's alone, as it decides what floats are added up
+    std::uint32_t points_per_chunk_; // depends on the plan alone, as it decides which floats are added up
     std::uint64_t chunks_;
     std::uint32_t most_chunks_at_a_time_;
     vulkan::Buffer sums_;
@@ -43,7 +43,7 @@ class BackwardTrace {
     vulkan::Kernel kernel_;
 };
 
-// Throws as make_device_tracer().
+// Makes the tracer; throws as make_device_tracer() does.
 std::unique_ptr<DeviceExposures> make_backward_tracer(const optics::Instrument& instrument,
                                                       const specimen::Specimen& specimen, const TraceOptions& options);
 

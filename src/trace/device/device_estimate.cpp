@@ -11,7 +11,7 @@ namespace vkfv::trace {
 
 namespace {
 
-// Of values that a device left for the host.
+// A grid of the values that a device has left in a buffer for the host.
 template <class Value>
 Grid<double> grid_of(const vulkan::Buffer& for_host, std::size_t from_byte, ImageSize pixels) {
     Grid<double> grid(pixels.columns, pixels.rows);
@@ -59,7 +59,7 @@ void DeviceEstimate::record(vulkan::Commands& commands, std::size_t slot) const 
     commands.barrier();
 }
 
-// The kernel writes where the host reads.
+// The kernel writes its estimates into the buffer that the host reads.
 void DeviceEstimate::record_kernel(vulkan::Commands& commands, const vulkan::Buffer& for_host) const {
     const auto* waves = has_waves_there() ? counted_.waves : nullptr;
     const estimate::EstimatedPixels push{.rule = rule_,

@@ -1,4 +1,4 @@
-// From the numbers that a device has counted to the light of each pixel, made there, and on to the host.
+// Estimates of each pixel's flux and standard error from counted numbers, made on the device and handed to the host.
 #pragma once
 
 #include "trace/device/device_scene.hpp"
@@ -17,29 +17,29 @@ namespace vkfv::trace {
 
 class DeviceEstimate {
   public:
-    // What an exposure counts. All of it must outlive the estimate.
+    // The buffers of an exposure's counts. All of them must outlive the estimate.
     struct Counted {
-        const vulkan::Buffer& pixels;            // with `stride` as estimate_pixels() has them
+        const vulkan::Buffer& pixels;            // numbers of the pixels, with `stride` as for estimate_pixels()
         std::size_t stride = 0;                  // in numbers
-        const vulkan::Buffer* further = nullptr; // numbers of 64 bits that go to the host as they are
-        const SceneWaves* waves = nullptr;       // whose image is the light; null: the light as rays bring it
-        double waves_scale = 0;                  // W for each unit of theirs
+        const vulkan::Buffer* further = nullptr; // 64-bit numbers that are copied to the host unchanged
+        const SceneWaves* waves = nullptr;       // its wave image is the light; null: fluxes are those of rays
+        double waves_scale = 0;                  // W for each unit of the wave image
         bool asks_for_power = false;
     };
     struct Estimated {
         PixelLight pixels;
-        std::optional<double> power; // W on all pixels, as rays bring it; if it is asked for
+        std::optional<double> power; // W on all pixels, by rays; empty unless asked for
     };
 
-    // A device without doubles leaves it to the host in any case.
+    // Prepares the estimate. A device without doubles leaves it to the host in any case.
     DeviceEstimate(const vulkan::Device& device, const estimate::EstimateRule& rule, ImageSize pixels,
                    const Counted& counted, MadeBy by = MadeBy::device);
 
-    // The host's memory for a slot, which takes a GPU's driver milliseconds: meant for when the device is at work.
-    // Throws RunError where there is none.
+    // Allocates the host's memory for a slot, which takes a GPU's driver milliseconds: meant for when the device is at
+    // work. Throws RunError where there is none.
     void make_room(std::size_t slot) const;
-    // After the last path of an exposure, and after its waves. The host finds the result when the commands have been
-    // done, until others are recorded for that slot.
+    // Records the estimate after the last path of an exposure and after its wave image. The host finds the result when
+    // the commands have been done, until others are recorded for that slot.
     void record(vulkan::Commands& commands, std::size_t slot) const;
     Estimated estimated(std::size_t slot) const;
     std::span<const std::uint64_t> further(std::size_t slot) const;
@@ -59,8 +59,8 @@ class DeviceEstimate {
     estimate::EstimateRule rule_;
     ImageSize pixels_;
     Counted counted_;
-    std::optional<vulkan::Kernel> kernel_; // none: the host makes the estimates
-    // The further numbers, then the estimates, or what the host makes them of.
+    std::optional<vulkan::Kernel> kernel_; // empty: the host makes the estimates
+    // The further numbers, then the estimates or the numbers from which the host makes them.
     mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_;
 };
 

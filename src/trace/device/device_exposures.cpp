@@ -12,7 +12,7 @@ struct DeviceExposures::UnderWay {
     UnderWay(const UnderWay&) = delete;
     UnderWay& operator=(const UnderWay&) = delete;
     ~UnderWay() {
-        exposure.reset(); // which waits for the device
+        exposure.reset(); // its destructor waits for the device
         tracer.give_back(slot);
     }
 

@@ -1,4 +1,4 @@
-// Tracers on a device: exposures one after another, the next one under way while the host takes the last.
+// Tracers on a device: exposures run one after another, the next one under way while the host takes the last.
 #pragma once
 
 #include "trace/device/device_scene.hpp"
@@ -18,28 +18,28 @@
 
 namespace vkfv::trace {
 
-// One that is under way, in this order: set_out(), submit() until it is counted, hand_over(), finish().
+// An exposure under way. Its calls have this order: set_out(), submit() until it is counted, hand_over(), finish().
 class DeviceExposure {
   public:
     virtual ~DeviceExposure() = default;
 
-    // From the numbers that were counted before; none: from nothing.
+    // Begins with the numbers counted before, or with zeros if there are none.
     virtual void set_out(std::span<const std::uint64_t> numbers) = 0;
     virtual std::size_t number_count() const = 0;
-    // Submits as much of the units first ... end - 1 as the device may be given at a time, in their order, and says
-    // where that ends.
+    // Submits as many of the units first ... end - 1, in their order, as the device may be given at a time; returns the
+    // end of the submitted ones.
     virtual std::uint64_t submit(std::uint64_t first, std::uint64_t end) = 0;
-    // All that was counted. Waits for it.
+    // All numbers counted so far; waits for the device.
     virtual std::vector<std::uint64_t> numbers() = 0;
-    // Submits what brings it to the host.
+    // Submits the commands that bring the result to the host.
     virtual void hand_over() = 0;
-    // Waits for the device and makes the image; once.
+    // Waits for the device and makes the image; called once.
     virtual Image finish() = 0;
-    // What it submits by, in the order of its submissions.
+    // The works by which it submits, in the order of its submissions.
     virtual std::vector<ExposureWork*> works() = 0;
 };
 
-// One whose work is a single sequence.
+// An exposure whose work is a single sequence of submissions.
 class SingleExposure : public DeviceExposure {
   public:
     SingleExposure(const vulkan::Device& device, DispatchPace& pace) : work(device, pace) {}
@@ -57,12 +57,13 @@ class DeviceExposures : public Tracer {
     int most_under_way() const final { return static_cast<int>(slots()); }
     ExposurePart count(FocalPosition position, std::uint32_t image, std::uint64_t first, std::uint64_t end) const final;
 
-    // For begin(), count(), and for who makes one exposure of those of several tracers.
+    // The following functions serve begin(), count(), and mixtures, which make one exposure of those of several
+    // tracers.
 
-    // How many may be under way, at most most_exposures; who begins another waits.
+    // Number of exposures that may be under way, at most most_exposures; a caller that begins another waits.
     virtual std::size_t slots() const = 0;
-    // One that has nothing to do yet. Not called by two threads at a time, nor are others begun before this one has
-    // been handed over: they share the device's memory but for what belongs to the slot.
+    // An exposure that has nothing to do yet. Not called by two threads at a time, and no other exposure is begun
+    // before this one has been handed over: all share the device's memory except their slots' own.
     virtual std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
                                                     std::size_t slot) const = 0;
 
@@ -71,16 +72,16 @@ class DeviceExposures : public Tracer {
 
     std::size_t take_slot() const;
     void give_back(std::size_t slot) const;
-    // What the exposure submits, counted as work.
+    // Submits units of the exposure as ExposureWork; returns the end of the submitted ones.
     std::uint64_t submitted(DeviceExposure& exposure, std::uint64_t first, std::uint64_t end) const;
     void trace(DeviceExposure& exposure, std::uint32_t image, const Checkpoints* checkpoints) const;
     Image finished(UnderWay& exposure) const;
 
     mutable std::mutex starting_;
-    mutable std::mutex mutex_; // of what follows
+    mutable std::mutex mutex_; // guards the members that follow
     mutable std::condition_variable given_back_;
     mutable std::array<bool, most_exposures> taken_{};
-    mutable std::optional<std::uint64_t> first_tick_; // of all exposures
+    mutable std::optional<std::uint64_t> first_tick_; // device tick at which the first of all exposures began
 };
 
 } // namespace vkfv::trace

@@ -12,7 +12,7 @@ namespace vkfv::trace {
 
 namespace {
 
-// Its units and numbers are those of the first light, then those of the next, and so on.
+// Tracer of a mixture of lights. Its units and numbers are those of the first light, then those of the next, and so on.
 class DeviceMixture final : public DeviceExposures {
   public:
     explicit DeviceMixture(std::vector<std::unique_ptr<DeviceExposures>> tracers) : tracers_(std::move(tracers)) {
@@ -49,7 +49,7 @@ class DeviceMixture::Exposure final : public DeviceExposure {
   public:
     struct Part {
         std::unique_ptr<DeviceExposure> exposure;
-        std::uint64_t first = 0; // of its units, among all
+        std::uint64_t first = 0; // index of its first unit among those of all lights
         std::uint64_t units = 0;
         bool begun = false;
     };
@@ -81,7 +81,7 @@ class DeviceMixture::Exposure final : public DeviceExposure {
     std::vector<std::uint64_t> numbers() override {
         std::vector<std::uint64_t> all;
         for (const Part& part : parts_) {
-            // The device has not cleared what was not begun.
+            // The device has not cleared the numbers of exposures that were not begun; they are zeros.
             const auto own =
                 part.begun ? part.exposure->numbers() : std::vector<std::uint64_t>(part.exposure->number_count());
             all.insert(all.end(), own.begin(), own.end());

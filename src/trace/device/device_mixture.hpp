@@ -8,7 +8,7 @@
 
 namespace vkfv::trace {
 
-// tracers: one for each source, at least two, all on one device.
+// The tracer of all sources. tracers: one for each source, at least two, all on one device.
 std::unique_ptr<DeviceExposures> mix_on_device(std::vector<std::unique_ptr<DeviceExposures>> tracers);
 
 } // namespace vkfv::trace

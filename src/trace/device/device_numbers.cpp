@@ -7,7 +7,7 @@ namespace vkfv::trace {
 
 namespace {
 
-constexpr std::size_t most_staging_bytes = std::size_t{64} << 20; // light of waves takes gigabytes
+constexpr std::size_t most_staging_bytes = std::size_t{64} << 20; // sorted light takes gigabytes
 
 } // namespace
 
@@ -51,7 +51,7 @@ void DeviceNumbers::write(ExposureWork& work, std::span<const std::uint64_t> num
     if (numbers.size() != count()) {
         throw std::logic_error("numbers of another exposure");
     }
-    if (bytes_ == 0) { // an exposure begins with a submission all the same
+    if (bytes_ == 0) { // an exposure begins with a submission even if it has no numbers
         work.open();
         work.submit();
         work.wait();
@@ -73,7 +73,7 @@ void DeviceNumbers::write(ExposureWork& work, std::span<const std::uint64_t> num
             place += piece.bytes;
         }
         work.submit();
-        work.wait(); // the staging memory is written again
+        work.wait(); // because the staging memory is written again
     }
 }
 

@@ -1,4 +1,4 @@
-// What an exposure has counted in a device's memory, on its way to a checkpoint and back.
+// The numbers that an exposure has counted in a device's memory, copied to a checkpoint and back.
 #pragma once
 
 #include "trace/device/exposure_work.hpp"
@@ -13,21 +13,21 @@ namespace vkfv::trace {
 
 class DeviceNumbers {
   public:
-    // Of 64-bit integers. Both must outlive it.
+    // buffers: of 64-bit integers. They and the device must outlive it.
     DeviceNumbers(const vulkan::Device& device, std::vector<const vulkan::Buffer*> buffers);
 
     std::size_t count() const { return bytes_ / sizeof(std::uint64_t); }
-    // After all that was submitted; waits for it.
+    // Reads all numbers after the submitted work has been done; waits for it.
     std::vector<std::uint64_t> read(ExposureWork& work) const;
     void write(ExposureWork& work, std::span<const std::uint64_t> numbers) const;
 
   private:
-    struct Piece { // of a buffer
+    struct Piece { // a part of a buffer
         const vulkan::Buffer* buffer;
         std::size_t first_byte;
         std::size_t bytes;
     };
-    // All of the buffers, one after the other, in loads of at most so many bytes, a multiple of 8.
+    // All buffers one after the other, divided into loads of at most so many bytes, a multiple of 8.
     std::vector<std::vector<Piece>> loads(std::size_t most_bytes) const;
     vulkan::Buffer& staging() const;
 

@@ -31,7 +31,7 @@ auto in_float(const std::vector<Record>& records) {
     return result;
 }
 
-// order: of the boxes of boxes_of().
+// The elements and facets in a device's memory. order: of the boxes of boxes_of().
 ElementBuffers element_buffers(const vulkan::Device& device, const optics::Room& room,
                                const std::vector<std::uint32_t>& order) {
     const auto surfaces = static_cast<std::uint32_t>(room.surfaces);
@@ -41,15 +41,15 @@ ElementBuffers element_buffers(const vulkan::Device& device, const optics::Room&
         held.push_back(box < surfaces ? box : kernels::FACET_BIT | (box - surfaces));
     }
     auto facets = in_float(room.facets);
-    facets.resize(std::max<std::size_t>(facets.size(), 1)); // a buffer holds something
+    facets.resize(std::max<std::size_t>(facets.size(), 1)); // a buffer must not be empty
     return {buffer_of(device, in_float(room.elements)), buffer_of(device, held), buffer_of(device, facets)};
 }
 
-// Whether the forward and backward kernels have the instrument as constants: if it is small enough, and where that pays
+// True if the forward and backward kernels have the instrument as constants: if it is small enough, and where that pays
 // or is asked for.
 bool pays_in_constants(const vulkan::Device& device, const optics::Instrument& instrument,
                        const TraceOptions& options) {
-    // Of a microscope with 38 surfaces a processor compiles such kernels in 5 s at every start, 12 s the first time,
+    // For a microscope with 38 surfaces a processor compiles such kernels in 5 s at every start, 12 s the first time,
     // and then saves 0.08 us a ray; a GPU compiles them in 1.4 s once, as they are kept (core/files/user_cache.hpp),
     // and saves 25 ps a ray.
     constexpr std::uint64_t rays_that_pay = 100000000;
@@ -71,7 +71,7 @@ EmissionBuffers emission_buffers(const vulkan::Device& device, EmissionOrder ord
 
 vulkan::Buffer light_points_of(const vulkan::Device& device, const optics::Instrument& instrument) {
     std::vector<float> points = instrument.light_field.value_or(optics::LightField{}).points.values;
-    points.resize(std::max<std::size_t>(points.size(), 1)); // a buffer holds something
+    points.resize(std::max<std::size_t>(points.size(), 1)); // a buffer must not be empty
     return buffer_of(device, points);
 }
 
@@ -83,7 +83,7 @@ std::unique_ptr<SceneWaves> make_waves(const optics::Instrument& seen, optics::W
     options.cells = static_cast<int>(filter.cells().side);
     options.tiles = filter.tiles().across();
     filter.set_parts(seen, waves_on_device(options, seen, device->report()).parts);
-    // Devices that are the host's own cores have nothing that the host has not, and it has doubles.
+    // A device that is the host's own cores is no faster than the host, and the host has doubles.
     const auto by = vulkan::is_software(device->report()) ? MadeBy::host : MadeBy::device;
     return std::make_unique<SceneWaves>(*device, std::move(filter), seen.detector_pixels(), by);
 }
@@ -119,7 +119,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
     const vulkan::OpenedDevice opened = opened_by(options);
     std::future<std::unique_ptr<SceneWaves>> made_waves;
     if (seen != nullptr && options.waves && !options.nonsequential) {
-        // Beside device and specimen.
+        // A thread makes the wave filter while device and specimen are prepared.
         made_waves = std::async(std::launch::async,
                                 [seen, &options, opened] { return make_waves(*seen, *options.waves, opened); });
     }
@@ -129,7 +129,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
     std::future<std::optional<physics::f64::TrainPolynomials>> polynomials;
     if (specialised && options.illumination_polynomials && options.estimator == Estimator::forward &&
         !options.nonsequential) {
-        // Beside the specimen, which takes longer.
+        // A thread fits the polynomials while the specimen is uploaded, which takes longer.
         polynomials = std::async(std::launch::async, [&instrument] {
             const auto fitted = optics::fit_illumination(instrument);
             return fitted ? std::optional(fitted->polynomials) : std::nullopt;

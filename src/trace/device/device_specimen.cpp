@@ -24,10 +24,10 @@ namespace vkfv::trace {
 
 namespace {
 
-// A slot that the chosen kind of specimen leaves unread must be bound all the same.
+// Size of the buffers that the chosen kind of specimen does not read, which must be bound all the same.
 constexpr std::size_t unread_bytes = 64;
 
-// Boxes along a side of an analytic surface: with many more the tree costs more than the march it saves.
+// Number of boxes along a side of an analytic surface: with many more the tree costs more than the march it saves.
 constexpr int boxes_along_side = 64;
 
 struct Triangulation {
@@ -35,7 +35,7 @@ struct Triangulation {
     std::vector<glm::uvec3> triangles;
 };
 
-// Counter-clockwise seen from +z.
+// Two triangles a cell of a height field, counter-clockwise seen from +z.
 Triangulation triangulate(const specimen::HeightField& field) {
     const Grid<float>& heights = field.heights;
     Triangulation result;
@@ -58,7 +58,7 @@ Triangulation triangulate(const specimen::HeightField& field) {
     return result;
 }
 
-// Two points of a column at a time: (i, j) and (i, j+1), row by row but for the last.
+// Two points of a column at each step, (i, j) and (i, j+1), row by row except the last.
 std::vector<glm::vec2> column_steps(const Grid<float>& heights) {
     std::vector<glm::vec2> steps;
     steps.reserve(heights.values.size());
@@ -70,7 +70,7 @@ std::vector<glm::vec2> column_steps(const Grid<float>& heights) {
     return steps;
 }
 
-// result[k] = values[order[k]]
+// Reorders values: result[k] = values[order[k]].
 template <class Value>
 std::vector<Value> in_order(const std::vector<Value>& values, const std::vector<std::uint32_t>& order) {
     std::vector<Value> result;
@@ -184,7 +184,7 @@ std::vector<glm::uvec3> upload_triangles(Uploader& uploader, const std::vector<g
     return ordered;
 }
 
-// Pairs of triangles in the order of their hierarchy; gives its nodes.
+// Uploads pairs of triangles in the order of their hierarchy; returns its nodes.
 std::vector<HierarchyNode> upload_in_hierarchy(Uploader& uploader, const std::vector<glm::vec3>& vertices,
                                                const std::vector<glm::uvec3>& triangles) {
     const std::vector<TrianglePair> pairs = pair_triangles(vertices, triangles);
@@ -194,13 +194,14 @@ std::vector<HierarchyNode> upload_in_hierarchy(Uploader& uploader, const std::ve
     for (const TrianglePair& pair : pairs) {
         boxes.push_back(pair.box());
     }
-    // More to a slot would save few nodes, as most are not full, and cost more pairs met in vain.
+    // More primitives to a slot would save few nodes, as most are not full, and cost more pairs met in vain.
     BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes, 1);
     uploader.put(kernels::BINDING_VERTICES, "triangles", in_order(pairs, hierarchy.order));
     return std::move(hierarchy.nodes);
 }
 
-// Over the parts of a specimen: the device's own of ray queries, or the nodes of ours. The quadtree has neither.
+// A hierarchy over the parts of a specimen: an acceleration structure for ray queries, or nodes of vkfv's own tree. The
+// quadtree has neither.
 struct Hierarchy {
     std::unique_ptr<vulkan::AccelerationStructure> structure;
     std::vector<HierarchyNode> nodes;
@@ -229,7 +230,7 @@ Hierarchy upload(Uploader& uploader, const specimen::Specimen&, const specimen::
     return over_triangles(uploader, surface.vertices, surface.triangles, traversal);
 }
 
-// relief: highest less lowest height, mm.
+// Uploads an analytic surface for a traversal. relief: highest less lowest height, mm.
 Hierarchy upload(Uploader& uploader, const specimen::Specimen& specimen, const specimen::Analytic& surface,
                  Traversal traversal, double relief) {
     if (surface.lattice) {
@@ -242,7 +243,7 @@ Hierarchy upload(Uploader& uploader, const specimen::Specimen& specimen, const s
     }
     const std::vector<vulkan::Box> boxes = boxes_of(pyramid, surface);
     if (traversal == Traversal::bvh) {
-        // A march costs far more than a box.
+        // One box a slot, as a march costs far more than a box.
         BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes, 1);
         uploader.put(kernels::BINDING_TILES, "tiles", in_order(boxes, hierarchy.order));
         return {nullptr, std::move(hierarchy.nodes)};
@@ -258,8 +259,8 @@ Hierarchy upload(Uploader& uploader, const specimen::Specimen&, const specimen::
     return over_triangles(uploader, mesh.vertices, mesh.triangles, traversal);
 }
 
-// The height field that a mesh is, each cell's way of being split in the last bit of its first height: the walk over
-// the cells reads it there (shaders/device/specimen_quadtree.glsl). A height is changed by a rounding step at most.
+// The height field of a mesh that is one, with each cell's diagonal in the last bit of its first height: the walk over
+// the cells reads it there (shaders/device/specimen_quadtree.glsl). A height changes by a rounding step at most.
 specimen::HeightField marked_field(MeshLattice lattice) {
     Grid<float>& heights = lattice.field.heights;
     for (int row = 0; row < heights.rows; ++row) {
@@ -275,7 +276,7 @@ specimen::HeightField marked_field(MeshLattice lattice) {
     return std::move(lattice.field);
 }
 
-// A tree behind another in one buffer; gives the index of its root there.
+// Appends a tree to another in one buffer; returns the index of its root there.
 std::uint32_t append_tree(std::vector<HierarchyNode>& nodes, const std::vector<HierarchyNode>& tree) {
     const auto root = static_cast<std::uint32_t>(nodes.size());
     for (HierarchyNode node : tree) {
@@ -298,7 +299,7 @@ ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const speci
         throw std::logic_error("elements are traced by ray query or bvh");
     }
     const bool may_take_ray_query = asked == Traversal::automatic && device.ray_query && !vulkan::is_software(device);
-    // A mesh is looked at only where it matters.
+    // Whether a mesh is a lattice is tested only where it matters, as the test takes time.
     const bool lattice = mesh && !nonsequential && !may_take_ray_query &&
                          (asked == Traversal::quadtree || asked == Traversal::automatic) &&
                          lattice_of(std::get<specimen::Mesh>(specimen.geometry)).has_value();
@@ -374,7 +375,7 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
         element_order_.resize(elements.size());
         std::iota(element_order_.begin(), element_order_.end(), 0u);
     } else if (!elements.empty()) {
-        // Meeting an element costs far more than a box.
+        // One box a slot, as meeting an element costs far more than a box.
         BoundingVolumeHierarchy of_elements = build_hierarchy(elements, 1);
         elements_root_ = append_tree(hierarchy.nodes, of_elements.nodes);
         element_order_ = std::move(of_elements.order);

@@ -27,7 +27,7 @@ namespace vkfv::trace {
 
 namespace {
 
-// Batches a submission at most: waiting for each costs a GPU 60 us, and a software device's dispatch is long enough.
+// Most batches a submission: waiting for each costs a GPU 60 us, and a software device's dispatch is long enough.
 constexpr std::uint32_t batches_per_submission_gpu = 8;
 
 class DeviceTracer final : public DeviceExposures {
@@ -70,7 +70,7 @@ class DeviceTracer final : public DeviceExposures {
     optics::Instrument instrument_;
     std::uint64_t rays_;
     DeviceScene scene_;
-    mutable std::vector<ExposureMemory> memories_; // prepare() writes that of the slot which its caller has alone
+    mutable std::vector<ExposureMemory> memories_; // prepare() writes its slot's memory, which its caller alone uses
     std::unique_ptr<PathTrace> trace_;
     DeviceEstimate estimate_;
     DeviceNumbers numbers_;

@@ -9,12 +9,12 @@
 
 namespace vkfv::trace {
 
-// Throws DeviceError (no usable device, too little memory) or InputError (a traversal the specimen or the device
-// does not admit).
+// Makes a tracer on a device. Throws DeviceError (no usable device, too little memory) or InputError (a traversal that
+// the specimen or the device does not admit).
 std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                            const TraceOptions& options);
 
-// Paths one by one, as host_paths(); for tests.
+// The ends of single paths, as host_paths() gives them; for tests.
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                   const TraceOptions& options, FocalPosition position, std::uint32_t image,
                                   std::uint64_t first, std::uint32_t count);

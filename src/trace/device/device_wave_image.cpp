@@ -19,7 +19,7 @@ using namespace waves;
 
 namespace {
 
-constexpr std::size_t workgroup = 128; // invocations, of each kernel here
+constexpr std::size_t workgroup = 128; // invocations of a workgroup of all kernels here
 
 vulkan::Buffer buffer_of(const vulkan::Device& device, std::size_t bytes) {
     return {device, bytes, vulkan::Buffer::Memory::device, wave_memory_remedy};
@@ -36,7 +36,8 @@ std::uint32_t nodes_of(const optics::PupilFilter& filter) {
     return static_cast<std::uint32_t>(filter.table().size()) / static_cast<std::uint32_t>(filter.tiles().count());
 }
 
-// Of the filter's table, from one frequency to the next of an image of so many parts, which goes on mirrored.
+// Steps of the filter's table from one frequency to the next, for an image of so many parts that is continued as its
+// mirror image.
 float steps_a_line(const optics::PupilFilter& filter, int parts) {
     return static_cast<float>(0.5 / parts / filter.part_pitch() / filter.cutoff() * filter.steps());
 }
@@ -148,8 +149,9 @@ void DeviceWaveImage::record(vulkan::Commands& commands, const WaveWindow& windo
         {{WAVES_BINDING_IMAGE, &image_}, {WAVES_BINDING_PIXELS, &result_}}};
     const std::size_t places = size_.count();
     const std::size_t pairs =
-        static_cast<std::size_t>(size_.columns + 1) / 2 * static_cast<std::size_t>(size_.rows); // of columns
-    // A workgroup of the filter takes 32 frequencies of a quarter of the plane, its middle included, and their images.
+        static_cast<std::size_t>(size_.columns + 1) / 2 * static_cast<std::size_t>(size_.rows); // pairs of columns
+    // A workgroup of the filter takes 32 frequencies of a quarter of the plane, its middle included, and their mirror
+    // images.
     const std::size_t quarters =
         static_cast<std::size_t>(size_.columns / 2 / 32 + 1) * static_cast<std::size_t>(size_.rows / 2 + 1) * workgroup;
     for (; groups.first < sizes_.groups(); groups.first += sizes_.groups_at_once()) {

@@ -1,4 +1,4 @@
-// The image that waves make of light sorted by pupil cells, on a device: WaveImage in float.
+// The wave image of light sorted by pupil cells, made on a device: WaveImage in float.
 #pragma once
 
 #include "optics/waves/pupil_filter.hpp"
@@ -18,19 +18,21 @@ namespace vkfv::trace {
 
 class DeviceWaveImage {
   public:
-    // light: of the filter's cells, WaveImage::numbers_a_cell() each. Device, filter and light must outlive it.
+    // light: WaveImage::numbers_a_cell() numbers for each of the filter's cells. Device, filter and light must outlive
+    // it.
     DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
                     const SortedLight& light);
 
-    // Of the light as it is when the commands run.
+    // Records the making of the image from the light as it is when the commands run.
     void record(vulkan::Commands& commands) const;
-    // What they leave: of each pixel, in the units of the sorted light, bytes(pixels).
+    // The image that the commands leave: float for each pixel, in the units of the sorted light; its size is
+    // bytes(pixels).
     const vulkan::Buffer& light_of_pixels() const { return result_; }
     static std::size_t bytes(ImageSize pixels) { return pixels.count() * sizeof(float); }
 
   private:
     void record(vulkan::Commands& commands, const WaveWindow& window) const;
-    // The table of the window's filters, where there are several tiles.
+    // Gathers the tables of the window's filters, where there are several tiles.
     void put_table_together(vulkan::Commands& commands, const WaveWindow& window) const;
     void dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel, std::span<const vulkan::Binding> bindings,
                   std::span<const std::byte> push, std::size_t places) const;
@@ -38,18 +40,18 @@ class DeviceWaveImage {
     const SortedLight& light_;
     ImageSize pixels_;
     physics::f32::PupilCells cells_;
-    ImageSize image_size_;                                  // in parts of pixels
-    std::vector<WaveWindow> windows_;                       // of one size
-    std::array<vulkan::SpecializationConstant, 1> filters_; // that are blended in each
-    ImageSize size_;                                        // of a window, in parts of pixels
+    ImageSize image_size_;                                  // parts of pixels
+    std::vector<WaveWindow> windows_;                       // all of one size
+    std::array<vulkan::SpecializationConstant, 1> filters_; // number of filters blended in a window
+    ImageSize size_;                                        // size of a window, parts of pixels
     WavePlanes sizes_;
     std::uint32_t steps_;
-    std::uint32_t nodes_; // of the tables of all cells together
+    std::uint32_t nodes_; // number of nodes of all cells' tables together
     float steps_a_column_;
     float steps_a_row_;
     vulkan::Buffer planes_;
-    vulkan::Buffer tables_;               // of all tiles of the field
-    std::optional<vulkan::Buffer> table_; // of the window's four filters, where there are any
+    vulkan::Buffer tables_;               // tables of all tiles of the field
+    std::optional<vulkan::Buffer> table_; // table of a window's four filters, if there are four
     vulkan::Buffer spectrum_;
     vulkan::Buffer image_;
     vulkan::Buffer result_;

@@ -6,7 +6,8 @@ namespace vkfv::trace {
 
 namespace {
 
-// Enough that a device is not left waiting; an exposure of very many rays would fill the host's memory with all of its.
+// Most submissions under way: enough that a device is not left waiting, and few enough that an exposure of very many
+// rays does not fill the host's memory with its submissions.
 constexpr std::size_t most_under_way = 16;
 
 } // namespace

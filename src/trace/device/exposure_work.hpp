@@ -1,4 +1,4 @@
-// A device's work on one exposure: several submissions, a few of them under way at a time.
+// A device's work on one exposure: several submissions, of which a few are under way at a time.
 #pragma once
 
 #include "trace/interface/dispatch_pace.hpp"
@@ -13,24 +13,24 @@ namespace vkfv::trace {
 
 class ExposureWork {
   public:
-    // Both must outlive it.
+    // Device and pace must outlive it.
     ExposureWork(const vulkan::Device& device, DispatchPace& pace) : device_(&device), pace_(&pace) {}
 
     // Opens the next submission, with a timestamp in front.
     vulkan::Commands& open();
-    // Stamps and submits it. paths: that it traces, for the pace; 0: it has other work. Waits for it where the pace is
-    // not known yet, and for earlier ones where many are under way.
+    // Ends the opened submission with a timestamp and submits it. paths: number that it traces, for the pace; 0: it has
+    // other work. Waits for it where the pace is not known yet, and for earlier ones where many are under way.
     void submit(std::uint64_t paths = 0);
     std::size_t submissions() const { return done_ + under_way_.size(); }
-    // Until the submission of this number, and those before, have been done.
+    // Waits until the submission of this number, and all before it, have been done.
     void wait(std::size_t submission);
     void wait() { wait(submissions() - 1); }
 
-    // Of what was waited for. Device ticks of the first beginning and the last end.
+    // Times of the work that has been waited for: device ticks of the first beginning and the last end.
     std::uint64_t first_tick() const { return first_tick_.value(); }
     std::uint64_t last_tick() const { return last_tick_; }
-    double seconds() const { return seconds_; } // from each one's beginning to its end
-    double longest() const { return longest_; } // s, of one
+    double seconds() const { return seconds_; } // sum over submissions, each from its beginning to its end
+    double longest() const { return longest_; } // s, of the longest submission
 
   private:
     struct Submission {

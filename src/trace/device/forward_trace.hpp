@@ -1,4 +1,5 @@
-// The forward trace: source to specimen to the pupil's gate, and on from there, as two kernels.
+// The forward trace in two kernels: from the source over the specimen to the pupil's gate, and from there to the
+// detector.
 #pragma once
 
 #include "trace/device/path_trace.hpp"
@@ -7,7 +8,7 @@ namespace vkfv::trace {
 
 class ForwardTrace final : public PathTrace {
   public:
-    // stop_illumination, stop_imaging: for timing alone, where the kernels end early.
+    // stop_illumination, stop_imaging: stages after which the kernels end early, for timing alone.
     ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::uint32_t stop_illumination = kernels::STOP_NOWHERE,
                  std::uint32_t stop_imaging = kernels::STOP_NOWHERE);
 

@@ -1,4 +1,4 @@
-// Non-sequential paths: light finds its own way through the elements, in one kernel.
+// The trace of non-sequential paths, whose order of elements the light itself decides, in one kernel.
 #pragma once
 
 #include "trace/device/path_trace.hpp"

@@ -7,7 +7,7 @@ namespace vkfv::trace {
 std::uint32_t suitable_batch(const DeviceScene& scene, const TraceOptions& options) {
     const std::uint64_t largest =
         std::min<std::uint64_t>(scene.device->report().max_storage_buffer_bytes / sizeof(physics::f32::Survivor),
-                                // Vulkan promises 65535 workgroups a dispatch.
+                                // Vulkan guarantees 65535 workgroups a dispatch
                                 std::uint64_t{65535} * workgroup_size * rays_per_invocation);
     const std::uint64_t wanted = options.batch > 0  ? options.batch
                                  : scene.software() ? std::uint64_t{1} << 20

@@ -1,4 +1,4 @@
-// One way of tracing paths on a device, batch by batch, and what it counts.
+// Base class of the ways of tracing paths on a device, batch by batch, with the buffers of their counts.
 #pragma once
 
 #include "trace/device/device_scene.hpp"
@@ -8,7 +8,7 @@
 
 namespace vkfv::trace {
 
-inline constexpr std::uint32_t workgroup_size = 128; // of the forward kernels
+inline constexpr std::uint32_t workgroup_size = 128; // invocations of a workgroup of the forward kernels
 inline constexpr std::uint32_t rays_per_invocation = 16;
 
 inline kernels::Batch make_batch(std::uint64_t first, std::uint32_t count) {
@@ -30,17 +30,17 @@ class PathTrace {
         commands.barrier();
     }
 
-    // Records the paths first ... first + count - 1 of the exposure. count is at most the batch; timestamps around and
-    // between its stages if wanted.
+    // Records the paths first ... first + count - 1 of the exposure. count is at most the batch. timed: with timestamps
+    // around and between its stages.
     virtual void record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint64_t first,
                         std::uint32_t count, bool timed = false) const = 0;
 
-    // What was counted: Accounts::pixel_numbers() and ledger_numbers() of 64 bits.
+    // The counts: Accounts::pixel_numbers() and ledger_numbers() numbers of 64 bits.
     const vulkan::Buffer& pixels() const { return pixels_; }
     const vulkan::Buffer& fates() const { return fates_; }
     std::uint32_t batch() const { return batch_; }
 
-    // All that an exposure counts, with the light that is sorted for waves.
+    // All buffers of counts of an exposure, including the light that is sorted for waves.
     std::vector<const vulkan::Buffer*> counted() const {
         std::vector<const vulkan::Buffer*> buffers = scene_.light_buffers();
         buffers.insert(buffers.end(), {&pixels_, &fates_});
@@ -54,8 +54,8 @@ class PathTrace {
     vulkan::Buffer fates_;
 };
 
-// Paths in flight at once, as far as the options leave it open: software devices like dispatches of about 100 ms, a GPU
-// wants enough rays to fill it.
+// The number of paths in flight at once, unless the options give it: software devices work best with dispatches of
+// about 100 ms, a GPU needs enough rays to fill it.
 std::uint32_t suitable_batch(const DeviceScene& scene, const TraceOptions& options);
 
 } // namespace vkfv::trace

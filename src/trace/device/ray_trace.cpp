@@ -12,7 +12,7 @@ namespace vkfv::trace {
 
 namespace {
 
-// A train, the index in front of it and the plane behind it, mm from the last vertex.
+// The ends of a train: its surfaces, the index in front of it, and the plane behind it, mm from the last vertex.
 struct TrainEnds {
     int first_surface;
     int surfaces;
@@ -61,7 +61,7 @@ TracedRay traced(glm::dvec3 position, glm::dvec3 direction, double path_length, 
     return result;
 }
 
-// In the frame of the first vertex, direction scaled by the index.
+// The given rays in the frame of the first vertex, directions scaled by the index.
 std::vector<physics::f64::Ray> entering(const optics::Instrument& instrument, std::span<const RayInput> inputs) {
     std::vector<physics::f64::Ray> rays;
     rays.reserve(inputs.size());
@@ -129,7 +129,7 @@ std::vector<TracedRay> trace_train_on_device(const optics::Instrument& instrumen
     ray_buffer.write_values(std::span<const physics::f32::Ray>(entering_rays));
 
     using enum vulkan::BindingKind;
-    // Given rays are monochromatic and lose nothing.
+    // Given rays are monochromatic and lose no light, so these features alone are compiled in.
     const std::array<vulkan::SpecializationConstant, 1> constants = {
         {{kernels::CONSTANT_FEATURES,
           instrument.features & (physics::f32::FEATURE_PLACEMENT | physics::f32::FEATURE_IDEAL_LENS)}}};

@@ -20,7 +20,7 @@ SceneWaves::SceneWaves(const vulkan::Device& device, optics::PupilFilter filter,
     noise_ = std::async(std::launch::async, [its_filter = filter_] { return its_filter.noise(); });
 }
 
-SceneWaves::~SceneWaves() = default; // waits for the threads
+SceneWaves::~SceneWaves() = default; // the members' destructors wait for the threads
 
 void SceneWaves::clear(vulkan::Commands& commands) const {
     light_.clear(commands);

@@ -1,4 +1,4 @@
-// What waves make of the light that a device's kernels sort.
+// The wave image of the light that a device's kernels sort.
 #pragma once
 
 #include "optics/waves/pupil_filter.hpp"
@@ -12,14 +12,14 @@
 
 namespace vkfv::trace {
 
-// Who makes something of what a device has counted.
+// Place where counted numbers are evaluated.
 enum class MadeBy { device, host };
 
-// The sorted light in the device's memory; made an image of there, or by the host.
+// The sorted light in the device's memory, and the wave image made of it on the device or by the host.
 class SceneWaves {
   public:
     // pixels: the detector's. The device must outlive it. Throws RunError where its memory does not hold the light. A
-    // thread makes the transforms ready meanwhile; what fails there, require() and make_image() throw.
+    // thread prepares the transforms meanwhile; its failures are thrown by require() and make_image().
     SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels, MadeBy by);
 
     ~SceneWaves();
@@ -28,18 +28,19 @@ class SceneWaves {
 
     const optics::PupilFilter& filter() const { return filter_; }
     const SortedLight& sorted_light() const { return light_; } // WaveImage::numbers() of 64 bits
-    // Of an image before its first path.
+    // Clears the light before an image's first path.
     void clear(vulkan::Commands& commands) const;
-    // If not, the host filters what an exposure has sorted, and the next one must wait for that.
+    // False: the host filters the sorted light of an exposure, and the next exposure must wait for that.
     bool on_device() const { return on_device_.valid(); }
 
     // Throws RunError or DeviceError where it is known by now that the device has no transforms.
     void require() const;
-    // On the device: submits what makes light_there() of an exposure's sorted light.
+    // Submits the making of light_there() from an exposure's sorted light, on the device.
     void make_image(ExposureWork& work) const;
-    // Of the pixels, in the units of the sorted light: DeviceWaveImage::bytes() of float.
+    // The wave image on the device: float for each pixel, in the units of the sorted light; DeviceWaveImage::bytes()
+    // long.
     const vulkan::Buffer& light_there() const { return on_device_.get()->light_of_pixels(); }
-    // By the host, of what is sorted at the moment.
+    // The wave image made by the host from the light sorted at the moment.
     Grid<double> light_by_host() const;
 
   private:
@@ -47,7 +48,7 @@ class SceneWaves {
     ImageSize pixels_;
     SortedLight light_;
     std::shared_future<std::unique_ptr<const DeviceWaveImage>> on_device_;
-    std::future<double> noise_; // the filter's: found while the device traces, kept by what its copies share
+    std::future<double> noise_; // the filter's noise, computed while the device traces; the filter's copies share it
 };
 
 } // namespace vkfv::trace

@@ -16,7 +16,7 @@ namespace vkfv::trace {
 
 class TracedExposure : public SingleExposure {
   public:
-    // All must outlive it.
+    // The parts that an exposure works with. All of them must outlive it.
     struct Of {
         const DeviceScene& scene;
         const ExposureMemory& memory;
@@ -44,8 +44,8 @@ class TracedExposure : public SingleExposure {
     }
 
   protected:
-    // The next submission; the first one begins with the order of paths, and with clearing what the trace counts unless
-    // it goes on from other numbers.
+    // Opens the next submission; the first one begins with the order of paths, and with clearing the trace's counts
+    // unless it goes on from other numbers.
     template <class Trace>
     vulkan::Commands& open(const Trace& trace) {
         of.scene.require_waves();
@@ -60,7 +60,7 @@ class TracedExposure : public SingleExposure {
         return commands;
     }
 
-    // paths: that the submission traces.
+    // Submits the opened submission. paths: number that it traces.
     void close(std::uint64_t paths) {
         work.submit(paths);
         of.estimate.make_room(of.slot);

@@ -15,8 +15,8 @@ namespace vkfv::trace {
 
 namespace {
 
-constexpr double usable_share = 0.8; // of a device's memory: the specimen, the kernels and other programs have the rest
-constexpr std::uint64_t padding = 128; // of a buffer (vulkan/buffer.hpp)
+constexpr double usable_share = 0.8;   // of a device's memory; the rest is for specimen, kernels and other programs
+constexpr std::uint64_t padding = 128; // bytes that a buffer is padded by (vulkan/buffer.hpp)
 
 ImageSize in_parts(int parts, ImageSize pixels) {
     return {pixels.columns * parts, pixels.rows * parts};
@@ -31,7 +31,7 @@ std::uint64_t light_bytes(const WaveSizes& sizes) {
     return side * side * bytes_a_cell(sizes);
 }
 
-// The tables of all tiles, and the table of the four filters of a window.
+// Bytes of the tables of all tiles, and of the table of the four filters of a window.
 std::uint64_t table_bytes(const WaveSizes& sizes) {
     const auto steps = static_cast<std::uint64_t>(optics::table_steps(sizes.cells));
     const auto cells = static_cast<std::uint64_t>(sizes.cells);
@@ -44,20 +44,20 @@ WavePlanes planes_of(const WaveSizes& sizes, std::uint64_t binding) {
     return {sizes.cells, in_parts(sizes.parts, window.size), window.filters, binding};
 }
 
-// A limit of a device that does not hold the light or its transforms.
+// A limit of a device that the light or its transforms exceed.
 struct Violation {
     const char* key;
     std::string found;
     std::string expected;
 };
 
-// The limit of the device that forbids so many cells and parts; none: it holds them.
+// The limit of the device that forbids so many cells and parts; none if it holds them.
 std::optional<Violation> violation(const optics::WaveOptions& options, ImageSize pixels,
                                    const vulkan::DeviceReport& device) {
     const WaveSizes sizes{.cells = options.cells, .parts = options.parts, .tiles = options.tiles, .pixels = pixels};
     const bool software = vulkan::is_software(device);
     const std::uint64_t binding = largest_binding(device);
-    // One group at a time is what a host cannot do without: the parts do not depend on its number of cores.
+    // One group at a time is the least that a host needs: the parts must not depend on its number of cores.
     const WaveMemory memory = software ? wave_memory_of_host(sizes, 1) : wave_memory(sizes, binding);
     const auto usable = static_cast<std::uint64_t>(usable_share * static_cast<double>(device.memory_bytes));
     const bool bounded = options.most_memory > 0 && options.most_memory < usable;
@@ -108,7 +108,7 @@ std::size_t cells_in_a_buffer(std::uint64_t most_bytes, std::size_t bytes_a_cell
 
 WaveMemory wave_memory(const WaveSizes& sizes, std::uint64_t binding) {
     const WavePlanes planes = planes_of(sizes, binding);
-    const std::uint64_t tables = sizes.tiles > 1 ? table_bytes(sizes) : 0; // one is small
+    const std::uint64_t tables = sizes.tiles > 1 ? table_bytes(sizes) : 0; // a single tile's table is small
     return {.light = light_bytes(sizes),
             .transforms = 2 * (planes.plane_bytes() + planes.image_bytes()) + planes.spectrum_bytes() + tables};
 }
@@ -117,11 +117,11 @@ WaveMemory wave_memory_of_host(const WaveSizes& sizes, int groups_at_once) {
     const WaveWindow window = wave_windows(sizes.tiles, sizes.pixels, sizes.parts).front();
     const std::uint64_t count = in_parts(sizes.parts, window.size).count();
     const std::uint64_t read = count / static_cast<std::uint64_t>(window.size.columns) *
-                               static_cast<std::uint64_t>(sizes.pixels.columns); // whole rows
+                               static_cast<std::uint64_t>(sizes.pixels.columns); // whole rows are read
     const auto at_once = static_cast<std::uint64_t>(std::min(groups_at_once, sizes.cells * sizes.cells / 4));
     constexpr std::uint64_t complex_bytes = 2 * sizeof(double), cells_a_group = 4;
-    // Each part of a pixel takes two frequencies of the spectra, beside the images and the transforms of the cells at a
-    // time, and afterwards beside the image with its mirror images and the pixels.
+    // Each part of a pixel takes two frequencies of the spectra; besides these there are first the images and
+    // transforms of the cells at a time, and afterwards the image with its mirror images and the pixels.
     const std::uint64_t spectra = static_cast<std::uint64_t>(window.filters) * count * 2 * complex_bytes;
     const std::uint64_t groups = at_once * cells_a_group * (read * sizeof(std::uint64_t) + count * sizeof(double));
     const std::uint64_t image = count * (4 * complex_bytes + sizeof(double));

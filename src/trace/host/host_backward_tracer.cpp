@@ -21,7 +21,7 @@ namespace {
 
 using namespace physics::f64;
 
-// The backward estimator in double, with the same points and numbers.
+// The backward estimator in double, with the same points and random numbers as on a device.
 class HostBackwardTracer final : public Tracer {
   public:
     HostBackwardTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,

@@ -8,7 +8,7 @@
 
 namespace vkfv::trace {
 
-// tracers: one for each source, at least two.
+// The tracer of all sources. tracers: one for each source, at least two.
 std::unique_ptr<Tracer> mix_on_host(std::vector<std::unique_ptr<Tracer>> tracers);
 
 } // namespace vkfv::trace

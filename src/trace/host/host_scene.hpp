@@ -1,4 +1,4 @@
-// The scene that the shared physics asks on the host, in double.
+// The scene that the shared physics reads on the host, in double.
 #pragma once
 
 #include "optics/instrument/room.hpp"

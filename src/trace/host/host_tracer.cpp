@@ -25,19 +25,19 @@ namespace {
 
 using namespace physics::f64;
 
-// Of a thread; several a second.
+// Paths of a thread between two reports of progress, of which there are several a second.
 constexpr std::uint64_t paths_between_words = 4096;
 
 uvec2 path_of(std::uint64_t index) {
     return {static_cast<uint>(index), static_cast<uint>(index >> 32)};
 }
 
-// What becomes of a path's light: of its own, and with directed scatter of a survivor beside it, with its weight.
+// The ends of a path's light: of its own light, and with directed scatter of a survivor beside it, with its weight.
 struct HostPath {
-    Fate own{}; // PATH_ALIVE: the survivor stands for it
+    Fate own{}; // fate of its own light; PATH_ALIVE: the survivor stands for it
     bool survives = false;
     Survivor survivor{};
-    Detection end{}; // of the survivor, else the own fate
+    Detection end{}; // detection of the survivor, or the fate of its own light
 };
 
 HostPath trace_host_path(const HostScene& scene, const physics::f64::Instrument& constants,
@@ -60,7 +60,7 @@ HostPath trace_host_path(const HostScene& scene, const physics::f64::Instrument&
     return path;
 }
 
-// The trains, and what of the trace the physics asks for.
+// The instrument's trains with the features that the trace adds.
 optics::TrainScene trains_of(const optics::Instrument& instrument, const TraceOptions& options) {
     optics::TrainScene trains = instrument.scene();
     trains.present |= options.directed_scatter ? FEATURE_DIRECTED_SCATTER : 0u;

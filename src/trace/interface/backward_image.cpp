@@ -13,14 +13,14 @@ namespace vkfv::trace {
 
 namespace {
 
-// Radius of the disc in which paths start. Where the pupil's rim stands at m of n equal shares of its area, m of the n
-// points of each shifted lattice are within the pupil, whatever the shift: the rim, beyond which there is no light,
-// then adds no noise.
+// Radius of the disc in which paths start. Where the pupil's rim encloses m of n equal shares of the disc's area, m of
+// the n points of each shifted lattice are within the pupil, whatever the shift: the rim, beyond which there is no
+// light, then adds no noise.
 double start_radius(const optics::TurnedInstrument& turned, const BackwardPlan& plan) {
     const double holds_all = turned.optics.pupil_radius;
     const double share = turned.pupil_rim / holds_all;
     const double within = std::floor(plan.points * share * share);
-    constexpr double least_share = 0.85; // of the points: 7 of 8 gain, fewer were not tried
+    constexpr double least_share = 0.85; // share of the points: 7 of 8 lower the variance, fewer were not tested
     return within >= least_share * plan.points ? turned.pupil_rim * std::sqrt(plan.points / within) : holds_all;
 }
 
@@ -53,7 +53,8 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
     using namespace physics::f64;
     BackwardOptics optics = instrument.turned.value().optics;
     optics.pupil_radius = start_radius(*instrument.turned, plan);
-    // What the sharpest lobe sends into the source's cone along its mirror direction, were it flat over the cone.
+    // `peak` is the largest share of light that a lobe would send into the source's cone along its mirror direction, if
+    // its BSDF were flat over the cone.
     double peak = 0;
     const bool is_ring = (instrument.features & FEATURE_RING) != 0;
     const double solid_angle = is_ring ? optics.ring_area / (optics.ring.distance * optics.ring.distance)
@@ -66,16 +67,16 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
             peak = std::max(peak, bsdf * solid_angle);
         }
     }
-    // A lobe much narrower than the cone is found by drawing it, not by drawing the cone.
+    // A lobe much narrower than the cone is sampled by drawing from the lobe, not from the cone.
     optics.lobe_candidates = peak > 2 ? 1 : 0;
     const bool has_rim = !is_ring && optics.source_inner > 0 && optics.lobe_candidates == 0;
     constexpr std::uint32_t rim_period = 4;
     optics.rim_period = has_rim ? std::min(rim_period, plan.points) : 0;
-    // Of what the source shows for sure, more directions make a better number. Where its rim is among them and a lobe
+    // Where the source is seen for sure, more directions lower the variance. Where its rim is among them and a lobe
     // changes little over the cone, one direction keeps the lattice whole, which a choice among several does not.
-    // Measured, signal to noise of bench_paper_chain's middle 100 x 100 pixels at 1024 paths each: g = 0.3 (peak 0.06),
-    // with the rim 753, without it 976 by one direction, 1330 by four, 1348 by eight; g = 0.8 (1.2), 104 and, by four,
-    // eight and sixteen, 170, 200 and 206.
+    // Measured signal to noise of the middle 100 x 100 pixels of bench_paper_chain at 1024 paths each: for g = 0.3
+    // (peak 0.06), 753 with the rim, without it 976 with one direction, 1330 with four, 1348 with eight; for g = 0.8
+    // (peak 1.2), 104, and with four, eight and sixteen 170, 200 and 206.
     optics.cone_candidates = peak < 0.3 ? 1 : 8;
     optics.sure_candidates = peak < 0.3 ? 4 : 8;
     return optics;
@@ -92,7 +93,7 @@ BackwardAccounts::BackwardAccounts(const optics::Instrument& instrument, const B
     const double radiance = instrument.flux / (pi * area);
     const double pitch = 2 * constants.detector_half_width / pixels_.columns;
     const double side = std::min(2 * constants.pixel_reach, 1.0);
-    const double sensitive = side * side; // share of a pixel
+    const double sensitive = side * side; // sensitive share of a pixel
     const double pupil_radius = start_radius(instrument.turned.value(), plan);
     scale_ = radiance * pitch * pitch * sensitive * (pi * pupil_radius * pupil_radius) *
              instrument.splitter_reflectance * instrument.splitter_transmittance;

@@ -64,7 +64,7 @@ VKFV_TO_FLOAT(Material, VKFV_MATERIAL_FIELDS)
 physics::f32::Surface to_float(const physics::f64::Surface& record) {
     physics::f32::Surface result{};
     VKFV_SURFACE_FIELDS(VKFV_ROUND, VKFV_ROUND_KNOWN, 0)
-    // Of spheres alone: elsewhere the curvature that bends is the ray's own.
+    // The residual is for spheres alone: elsewhere the curvature that refracts is the local one.
     if (record.conic == 0 && (record.flags & physics::f64::SURFACE_ASPHERIC) == 0) {
         const float bend = result.curvature * (result.index_after - result.index_before);
         result.bend_residual = static_cast<float>(record.curvature * (record.index_after - record.index_before) -

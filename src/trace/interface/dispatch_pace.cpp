@@ -8,7 +8,7 @@ namespace {
 
 constexpr double aim = 0.1;                       // s
 constexpr std::uint64_t first_paths = 1ull << 14; // some milliseconds on one core
-constexpr std::uint64_t most_growth = 8;          // few paths do not fill a GPU: their rate is not that of many
+constexpr std::uint64_t most_growth = 8;          // few paths do not fill a GPU, so their rate is not that of many
 
 } // namespace
 
@@ -28,7 +28,7 @@ bool DispatchPace::settled() const {
 void DispatchPace::took(std::uint64_t paths, double seconds) {
     const std::scoped_lock lock(mutex_);
     if (2 * paths < paths_ && seconds < aim) {
-        return; // the rest of an exposure, too little to tell a rate
+        return; // the rest of an exposure is too short to show a rate
     }
     const double fitting = static_cast<double>(paths) * aim / std::max(seconds, 1e-9);
     const std::uint64_t grown = std::min(most_, most_growth * paths_);

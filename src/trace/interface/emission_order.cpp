@@ -15,15 +15,15 @@ namespace {
 
 using namespace physics::f64;
 
-constexpr int bits_of_number = 21; // in each of which the four numbers of an emission are drawn
-constexpr int most_cell_bits = 17; // two megabytes, which stay in a GPU's cache; shaders/device/emission_cell.glsl
-constexpr int most_pupil_bits = 2; // of them; 4 or 6 are slower
+constexpr int bits_of_number = 21; // bits of each of the four numbers of an emission
+constexpr int most_cell_bits = 17; // 2 MB of cells stay in a GPU's cache; shaders/device/emission_cell.glsl
+constexpr int most_pupil_bits = 2; // most of these bits that subdivide the pupil; 4 or 6 are slower
 constexpr int sector_bits = 3;     // a ring of a disc is about 4 pi times as long as the disc is wide
 
-// Two of the four numbers, which cut a disc, a rectangle or a ring into pieces about as wide as long.
+// Two of the four numbers, whose leading bits cut a disc, a rectangle or a ring into pieces about as wide as long.
 struct Plane {
-    std::array<int, 2> number; // a disc's turn is the first
-    int leading = 0;           // bits of the first before the two take turns
+    std::array<int, 2> number; // for a disc the first is its azimuth
+    int leading = 0;           // bits of the first number before the two alternate
 };
 
 Plane directions(const optics::Instrument& instrument) {
@@ -43,12 +43,13 @@ Plane places(const optics::Instrument& instrument) {
     return {.number = {1, 0}, .leading = sector_bits};
 }
 
-// Which number the k-th bit of a piece belongs to.
+// The index of the number that the k-th bit of a piece belongs to.
 int number_of_bit(const Plane& plane, int k) {
     return plane.number[k < plane.leading ? 0 : static_cast<std::size_t>((k - plane.leading) % 2)];
 }
 
-// How far light arrives from where it did if its place at the source is another, or its direction; sums in mm^2.
+// Sums of squared displacements, mm^2, of light's arrival on the specimen by a change of its place at the source or of
+// its direction.
 struct Displacements {
     double by_place = 0;
     double by_direction = 0;
@@ -86,18 +87,18 @@ Displacements displacements(const optics::Instrument& instrument) {
 
 EmissionOrder::EmissionOrder(const optics::Instrument& instrument, std::uint64_t paths, std::uint32_t seed)
     : paths_(std::max<std::uint64_t>(paths, 1)), seed_(seed) {
-    // With 8 sqrt(paths) cells where a cell begins varies by about four cells, so that it is found near its average.
+    // With 8 sqrt(paths) cells the start of a cell varies by about four cells, so that it is found near its average.
     const int bits =
         std::clamp(static_cast<int>(std::log2(8 * std::sqrt(static_cast<double>(paths_)))), 0, most_cell_bits);
     const Plane at_source = places(instrument), towards = directions(instrument);
     const auto [by_place, by_direction] = displacements(instrument);
     const bool places_first = by_place > by_direction;
-    // Of a ring light both say where.
+    // For a ring light both place and direction decide where light arrives.
     const bool both = std::min(by_place, by_direction) > 0.1 * std::max(by_place, by_direction);
     const int pupil_bits = both ? bits / 2 : std::min(most_pupil_bits, bits / 3);
     const Plane field = places_first ? at_source : towards, pupil = places_first ? towards : at_source;
 
-    std::vector<int> numbers; // of each bit of a cell's index, from the highest
+    std::vector<int> numbers; // number for each bit of a cell's index, from the highest
     numbers.reserve(static_cast<std::size_t>(bits));
     for (int k = 0; k < bits - pupil_bits; ++k) {
         numbers.push_back(number_of_bit(field, k));
@@ -113,12 +114,13 @@ EmissionOrder::EmissionOrder(const optics::Instrument& instrument, std::uint64_t
             given_[cell][numbers[k]] |= bit << --place[numbers[k]];
         }
     }
-    drawn_ = ~given_.back(); // of which all given bits are 1
+    drawn_ = ~given_.back(); // all given bits of the last cell are 1
 }
 
 std::vector<std::uint64_t> EmissionOrder::first_paths(std::uint32_t image) const {
-    // Poisson numbers of one mean are, given their sum, multinomial; with the paths that lack of it, each in a cell
-    // drawn by itself, they are the multinomial numbers of all paths. A sum above all paths is drawn again.
+    // Poisson numbers of one mean are, given their sum, multinomial. With the paths that their sum lacks, each in a
+    // cell drawn by itself, they are the multinomial numbers of all paths. If the sum exceeds all paths it is drawn
+    // again.
     const auto all = static_cast<double>(paths_);
     const double mean = std::max(0.0, all - 2 * std::sqrt(all)) / static_cast<double>(cells());
     std::vector<std::uint64_t> counts(cells() + 1);
@@ -139,7 +141,7 @@ std::vector<std::uint64_t> EmissionOrder::first_paths(std::uint32_t image) const
         const auto bits = philox_4x32({static_cast<std::uint32_t>(lacking), static_cast<std::uint32_t>(lacking >> 32),
                                        0, static_cast<std::uint32_t>(statistics::Purpose::emission_order_rest)},
                                       seed_, image, PHILOX_ROUNDS);
-        ++counts[bits.x & (cells() - 1)]; // a power of 2
+        ++counts[bits.x & (cells() - 1)]; // the number of cells is a power of 2
     }
     std::exclusive_scan(counts.begin(), counts.end(), counts.begin(), std::uint64_t{0});
     return counts;

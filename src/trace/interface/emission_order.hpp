@@ -1,4 +1,4 @@
-// Which paths of an image leave the source where: shaders/physics/emission_cell.glsl.
+// The order in which the paths of an image leave the source: shaders/physics/emission_cell.glsl.
 #pragma once
 
 #include "optics/instrument/instrument.hpp"
@@ -10,20 +10,20 @@
 
 namespace vkfv::trace {
 
-// Cells of the emission along a curve on which what lies close together in the field is close together, and in the
-// pupil within that; which of the two belongs to the places at the source and which to the directions is seen by rays.
-// Where both say where light arrives they take equal shares. All paths of an image together are distributed as
-// independent ones: how many lie in a cell is drawn, not shared out, from the multinomial distribution.
+// Cells of the emission along a curve on which neighbours in the field stay close together, and within that neighbours
+// in the pupil; rays show which of the two belongs to the places at the source and which to the directions. Where both
+// decide where light arrives they take equal shares. All paths of an image together are distributed as independent
+// ones: the number in each cell is drawn from the multinomial distribution, not shared out.
 class EmissionOrder {
   public:
-    // A single cell: no order.
+    // An order of a single cell: paths are not ordered.
     EmissionOrder() = default;
-    // Of images of so many paths (> 0). seed: of the trace.
+    // The order for images of so many paths (> 0). seed: of the trace.
     EmissionOrder(const optics::Instrument& instrument, std::uint64_t paths, std::uint32_t seed);
 
     std::size_t cells() const { return given_.size(); }
     double cells_per_path() const { return static_cast<double>(cells()) / static_cast<double>(paths_); }
-    // Of each cell in order, what EmissionCell::given is; its `drawn` is the same for all.
+    // EmissionCell::given of each cell in order; EmissionCell::drawn is the same for all.
     std::span<const glm::uvec4> given() const { return given_; }
     glm::uvec4 drawn() const { return drawn_; }
     // The first path of each cell in an image, and the number of paths at the end.
@@ -41,7 +41,7 @@ class EmissionCells {
   public:
     EmissionCells(const EmissionOrder& order, std::uint32_t image)
         : order_(&order), first_paths_(order.first_paths(image)) {}
-    // Of a path. Those beyond the image's are in the last.
+    // The cell of a path. Paths beyond the image's are in the last cell.
     physics::f64::EmissionCell of(std::uint64_t path) const;
 
   private:

@@ -14,7 +14,8 @@ namespace {
 void add(Ledger& sum, const Ledger& part) {
     sum.emitted += part.emitted;
     sum.residual_error = std::hypot(sum.residual_error, part.residual_error);
-    // By name, since other light may have other surfaces. Of equal names the first is the first's, and so on.
+    // Entries are matched by name, since other light may have other surfaces. Entries with equal names are matched in
+    // their order.
     std::map<std::string_view, std::size_t> seen;
     const auto known = static_cast<std::ptrdiff_t>(sum.entries.size());
     for (const Ledger::Entry& entry : part.entries) {

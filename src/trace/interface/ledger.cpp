@@ -42,7 +42,7 @@ const char* name_of(Status status) {
     case Status::totally_reflected:
         return "totally reflected";
     case Status::lost_in_reflection:
-        return "lost in reflection"; // or absorbed there: by a mirror, or a pattern of light
+        return "lost in reflection"; // or absorbed there, by a mirror or a light pattern
     case Status::not_aimed_at:
         return "not aimed at";
     case Status::splitter_towards_specimen:
@@ -141,7 +141,7 @@ void Accounts::add_slots(const std::vector<Surface>& surfaces, int illumination,
     for (const Plain& slot : plain) {
         slots_.push_back({plain_entry(static_cast<Status>(slots_.size()), 0, 0), slot.splitter_passes, slot.crossings});
     }
-    slots_.resize(PATH_STATUS_COUNT); // statuses that belong to surfaces count there
+    slots_.resize(PATH_STATUS_COUNT); // statuses with a surface have slots of their own
     for (const Surface& surface : surfaces) {
         for (int kind = 0; kind < SURFACE_STATUS_COUNT; ++kind) {
             Ledger::Entry entry = plain_entry(static_cast<Status>(PATH_VIGNETTED + kind), 0, 0);
@@ -156,7 +156,7 @@ void Accounts::add_slots(const std::vector<Surface>& surfaces, int illumination,
 Ledger Accounts::ledger(std::span<const std::uint64_t> numbers, std::uint64_t rays) const {
     const double per_ray = flux_ * aimed_ / static_cast<double>(rays);
     const auto counts = numbers.first(slots());
-    // In rays of weight 1.
+    // The amount of light in a slot, in rays of weight 1.
     const auto amount = [&](std::size_t slot) {
         return weighted_ ? static_cast<double>(numbers[slots() + slot]) / WEIGHT_ONE
                          : static_cast<double>(counts[slot]);
@@ -171,7 +171,7 @@ Ledger Accounts::ledger(std::span<const std::uint64_t> numbers, std::uint64_t ra
     };
     add_slot(PATH_DETECTED);
     ledger.entries.push_back(plain_entry(Status::not_aimed_at, flux_ * (1.0 - aimed_), 0));
-    // The splitter takes its share of every ray that passes it, known from the fates beyond.
+    // The splitter takes its share of every ray that passes it; how many passed follows from the fates beyond it.
     std::array<double, 2> passed = {0, 0};
     std::array<std::uint64_t, 2> rays_passed = {0, 0};
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
@@ -190,7 +190,7 @@ Ledger Accounts::ledger(std::span<const std::uint64_t> numbers, std::uint64_t ra
         }
     }
     if (weighted_) {
-        // A path adds 1 in the mean.
+        // A path adds 1 to the ledger on average.
         const double mean_square = static_cast<double>(numbers.back()) / 262144.0 / static_cast<double>(rays);
         ledger.residual_error = flux_ * aimed_ * std::sqrt(std::max(mean_square - 1, 0.0) / static_cast<double>(rays));
     }
@@ -222,7 +222,7 @@ Image Accounts::image(PixelLight pixels, std::span<const std::uint64_t> ledger_n
         image.crossings += static_cast<double>(ledger_numbers[slot]) * slots_[slot].crossings;
     }
     if (weighted_) {
-        // A path's own light and its survivor, both counted, have crossed the illumination once.
+        // A path's own light and its survivor, counted separately, crossed the illumination together once.
         image.crossings -= (counted - static_cast<double>(rays)) * slots_[PATH_ESCAPED].crossings;
     }
     return image;

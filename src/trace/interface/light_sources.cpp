@@ -12,7 +12,7 @@ namespace vkfv::trace {
 
 namespace {
 
-// The digest of a single source is that of its instrument.
+// The combined digest of the lights; for a single source it is that of its instrument.
 std::string digest_of_lights(const std::vector<std::string>& instruments) {
     if (instruments.size() == 1) {
         return instruments.front();
@@ -35,7 +35,7 @@ std::vector<std::uint64_t> rays_of_sources(std::uint64_t rays, std::span<const d
             std::max<std::uint64_t>(1, static_cast<std::uint64_t>(share / all * static_cast<double>(rays))));
         sum += parts.back();
     }
-    // The largest part takes up the difference that rounding, or the least of one ray each, makes to the sum.
+    // The largest part takes up the difference of the sum that rounding, or the minimum of one ray each, makes.
     const auto largest = std::ranges::max_element(parts);
     *largest = *largest + rays > sum ? *largest + rays - sum : 1;
     return parts;
@@ -44,7 +44,7 @@ std::vector<std::uint64_t> rays_of_sources(std::uint64_t rays, std::span<const d
 std::uint64_t launched_rays(const TraceOptions& options, const optics::InstrumentDescription& instrument) {
     const std::vector<double> equal(instrument.sources().size(), 1.0);
     std::uint64_t all = 0;
-    for (const std::uint64_t rays : rays_of_sources(options.rays, equal)) { // forward the sum is that of any shares
+    for (const std::uint64_t rays : rays_of_sources(options.rays, equal)) { // forward any shares give this sum
         all += options.estimator == Estimator::backward ? backward_rays(rays, instrument.detector_pixels) : rays;
     }
     return all;
@@ -59,7 +59,7 @@ std::vector<OneLight> one_by_one(const optics::Instrument& instrument, const Tra
     const auto rays = rays_of_sources(options.rays, shares);
     std::vector<OneLight> alone;
     for (std::size_t k = 0; k < lights.size(); ++k) {
-        constexpr std::uint32_t golden = 0x9E3779B9u; // no small seeds of other images are met
+        constexpr std::uint32_t golden = 0x9E3779B9u; // keeps the seeds from those of other images
         OneLight one{.instrument = *lights[k], .options = options};
         one.instrument.further_lights.clear();
         one.options.rays = rays[k];

@@ -16,13 +16,13 @@
 
 namespace vkfv::trace {
 
-// The rays of each source, in proportion to what is given for it: `rays` in all, but at least one each.
+// The number of rays of each source, in proportion to `shares`: `rays` in all, but at least one each.
 std::vector<std::uint64_t> rays_of_sources(std::uint64_t rays, std::span<const double> shares);
 
-// One source of an instrument and how it is traced: the instrument without its other sources, and options with the
-// source's own rays, seed and share of a device's memory. Forward rays carry the same power of all sources, as far as
-// they are aimed; backward each source is looked for by as many paths. Of an instrument with one source: what was
-// given.
+// One source of an instrument and the options for it: the instrument without its other sources, and options with the
+// source's own rays, seed and share of a device's memory. Forward rays of all sources carry the same power, as far as
+// they are aimed; backward each source gets the same number of paths. For an instrument with one source both are
+// returned unchanged.
 struct OneLight {
     optics::Instrument instrument;
     TraceOptions options;

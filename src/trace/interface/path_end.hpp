@@ -5,7 +5,7 @@
 
 namespace vkfv::trace {
 
-// How one path ended; what the kernel probe_paths gives of the device. x and y (mm) as physics::Detection: 0 for light
+// The end of one path; the kernel probe_paths makes it on a device. x and y (mm) as in physics::Detection: 0 for light
 // that did not leave the specimen through the gate, and without meaning for light that a surface or the specimen
 // stopped.
 struct PathEnd {
@@ -13,7 +13,7 @@ struct PathEnd {
     std::int32_t surface = -1;
     double x = 0;
     double y = 0;
-    double weight = 1; // of the light there; with directed scatter of a path's survivor, if it has one
+    double weight = 1; // weight of the light at x and y; with directed scatter that of a path's survivor, if it has one
 };
 
 } // namespace vkfv::trace

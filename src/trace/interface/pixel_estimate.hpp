@@ -1,4 +1,4 @@
-// From the numbers that were counted to the light of each pixel: on the host, to the bits of DeviceEstimate.
+// Each pixel's flux and standard error from counted numbers, on the host, to the same bits as DeviceEstimate.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -16,11 +16,11 @@ struct PixelLight {
     Grid<double> standard_error; // W
 };
 
-// numbers: as the rule says; of randomisations, each has `stride` numbers, no fewer than pixels.
+// numbers: as the rule defines them; each randomisation has `stride` numbers, at least the number of pixels.
 PixelLight estimate_pixels(const estimate::EstimateRule& rule, ImageSize pixels, std::span<const std::uint64_t> numbers,
                            std::size_t stride = 0);
 
-// Of all pixels, in their order, for the same bits on any number of cores.
+// The sum over all pixels in their order, so that its bits do not depend on the number of cores.
 double sum_of(std::span<const double> pixels);
 
 } // namespace vkfv::trace

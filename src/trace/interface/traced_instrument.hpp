@@ -1,4 +1,4 @@
-// An instrument as the options have its light traced.
+// The instrument changed as the trace needs it.
 #pragma once
 
 #include "optics/instrument/instrument.hpp"
@@ -6,8 +6,8 @@
 
 namespace vkfv::trace {
 
-// Where waves come after, its pixels count all of their light, and the filter tells what of it falls on what is
-// sensitive. Of light that meets the specimen once the source sends only what the detector can see.
+// With wave imaging, pixels collect over their full area; the filter applies the fill factor. If light meets the
+// specimen only once, the source sends only light that the detector can see.
 optics::Instrument as_traced(const optics::Instrument& instrument, const TraceOptions& options);
 
 } // namespace vkfv::trace

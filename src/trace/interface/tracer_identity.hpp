@@ -1,4 +1,5 @@
-// What the bits of an image depend on beside the configuration: the device as it is, and the program as it was built.
+// The identity of a tracer: all that the bits of an image depend on besides the configuration, which is the device and
+// the build of the program.
 #pragma once
 
 #include "optics/instrument/instrument.hpp"
@@ -18,47 +19,47 @@ struct DeviceReport;
 
 namespace vkfv::trace {
 
-// The numbers by which light of waves is sorted and filtered; 0: images of rays.
+// The numbers that define the sorting and filtering of light for waves; 0: images of rays.
 struct LightSorting {
     int pupil_cells = 0;     // across the pupil
-    int parts_per_pixel = 0; // of its side
+    int parts_per_pixel = 0; // along a pixel's side
     int field_tiles = 1;     // filters across the field
 
-    // options: whose cells, parts and tiles are known.
+    // options: with known cells, parts and tiles.
     static LightSorting of(const optics::WaveOptions& options);
     static LightSorting of(const std::optional<optics::PupilFilter>& filter);
 };
 
-// Facts alone: nothing of why a device was chosen or what else stands beside it.
+// The identity holds facts alone: not why a device was chosen, nor which others there are.
 struct TracerIdentity {
     std::string device;          // name; "host": the reference in double
-    std::uint32_t vendor_id = 0; // PCI's; 0: the host
+    std::uint32_t vendor_id = 0; // PCI vendor; 0: the host
     std::uint32_t device_id = 0;
-    std::string driver;    // with its version
+    std::string driver;    // name and version
     std::string traversal; // "quadtree", "bvh", "ray-query"; empty: the host
-    std::string fourier;   // the library that transforms images for waves; empty: the host, or images of rays
+    std::string fourier;   // library that transforms wave images; empty: the host, or images of rays
     LightSorting sorting;
     std::vector<LightSorting>
-        further_sortings{}; // of the light of further sources; none: images of rays, or one source
-    std::string kernels;    // digest of the SPIR-V, whose source is that of the host's physics too
-    std::string instrument; // digest of the records that the instrument became; of several sources, of theirs
+        further_sortings{}; // sortings of further sources' light; empty: images of rays, or one source
+    std::string kernels;    // digest of the SPIR-V, whose source is also that of the host's physics
+    std::string instrument; // digest of the instrument's records; for several sources, of their digests
 
     std::string toml() const; // lines `key = value`
-    // Of such lines. Throws InputError.
+    // Parses such lines. Throws InputError.
     static TracerIdentity parse(const TomlTable& table);
     std::string text() const; // "NVIDIA H100 (NVIDIA 580.159), traversal quadtree"
 };
 
-// Of the instrument as rays meet it, surface by surface, rounded to float; turned round, with the disc and the lattices
-// of backward paths, which another program may have others of.
+// The digest of the instrument's records as rays meet it, surface by surface, rounded to float; for a reversed
+// instrument it includes the disc and the lattices of backward paths, which may differ in other programs.
 std::string instrument_digest(const optics::Instrument& instrument);
 
-// Of the program's kernels of the trace.
+// The digest of the program's trace kernels.
 std::string kernels_digest();
 
-// Of the reference in double.
+// The identity of the reference in double.
 TracerIdentity host_identity(const optics::Instrument& instrument, LightSorting sorting);
-// Of a device by its report. `instrument`: as the paths run through it.
+// The identity of a device by its report. `instrument`: in the direction of the paths.
 TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::string& traversal,
                                const optics::Instrument& instrument, LightSorting sorting);
 

@@ -34,7 +34,7 @@ void rethrow_as_failure_of(int place) {
 
 namespace {
 
-// The sum of an exposure's parts, where a checkpoint is looked for.
+// The sum of an exposure's parts, in the form of a checkpoint from which the image is made.
 class Counted final : public Checkpoints {
   public:
     explicit Counted(Checkpoint checkpoint) : checkpoint_(std::move(checkpoint)) {}
@@ -50,9 +50,9 @@ class Counted final : public Checkpoints {
 struct Parted {
     std::promise<Image> done;
     std::chrono::steady_clock::time_point begun = std::chrono::steady_clock::now();
-    std::mutex mutex; // of what follows
+    std::mutex mutex; // guards the members that follow
     ExposurePart sum;
-    std::size_t missing = 0; // parts
+    std::size_t missing = 0; // number of parts not yet counted
     bool failed = false;
 };
 
@@ -104,7 +104,7 @@ class TracerPool final : public Tracer {
         return future;
     }
 
-    // One more each than they work on: a device that is ahead need not wait for the image that is taken next.
+    // A device may have one exposure more than it works on, so that it need not wait for the image that is taken next.
     int most_under_way() const override {
         int most = 0;
         for (const auto& tracer : tracers_) {
@@ -134,11 +134,12 @@ class TracerPool final : public Tracer {
     struct Begun {
         std::promise<Image> done;
         std::future<Image> image;
-        ExposurePart parts{};                                          // that it was made of
+        ExposurePart parts{};                                          // sum of the parts that it is made of
         std::optional<std::chrono::steady_clock::time_point> parted{}; // when its parts were begun
     };
 
-    // None: the pool ends, or the device has begun others and may finish them meanwhile.
+    // The next job; none if the pool ends, or if not waiting and there is none (the device may finish begun images
+    // meanwhile).
     std::optional<Job> next(bool wait) const {
         std::unique_lock lock(mutex_);
         if (wait) {
@@ -157,7 +158,7 @@ class TracerPool final : public Tracer {
         return ends_;
     }
 
-    // Who counts the last part makes the image.
+    // Counts a part; the caller that counts the last part begins the image.
     static std::optional<Begun> count(const Tracer& tracer, const Job& job) {
         Parted& parted = *job.parted;
         {
@@ -185,7 +186,7 @@ class TracerPool final : public Tracer {
             .done = std::move(parted.done), .image = std::move(image), .parts = std::move(sum), .parted = parted.begun};
     }
 
-    // A device's thread.
+    // The loop of a device's thread.
     void work(std::size_t place) const {
         const Tracer& tracer = *tracers_[place];
         const auto fail = [&](std::promise<Image>& done) {
@@ -241,7 +242,7 @@ class TracerPool final : public Tracer {
 
     std::vector<std::unique_ptr<Tracer>> tracers_;
     std::uint64_t least_parted_;
-    mutable std::mutex mutex_; // of what follows
+    mutable std::mutex mutex_; // guards the members that follow
     mutable std::condition_variable changed_;
     mutable std::deque<Job> waiting_;
     bool ends_ = false;

@@ -24,22 +24,22 @@ ImageSize in_parts(ImageSize pixels, const optics::PupilFilter& filter) {
 } // namespace
 
 // The spectrum of an extended window, whose periods are twice its sides: at l / (2 columns) and -l / (2 columns) cycles
-// a part along x, m / (2 rows) along y, as seen from the lower left corner of its first part, over 4.
+// a part along x, m / (2 rows) along y, with its phase at the lower left corner of the first part, divided by 4.
 struct WaveImage::Spectrum {
     Grid<Complex> ahead;
     Grid<Complex> behind;
 };
 
-// One window, of which each filter has a spectrum.
+// One window, with a spectrum for each filter.
 class WaveImage::Window {
   public:
     // A cell and its mirror images (itself, left to right, upside down, both) are transformed together, by the parts of
-    // their images' extension that are even or odd along rows (x) and columns (y).
+    // their extended images that are even or odd along rows (x) and columns (y).
     enum Part : std::size_t { even, odd_along, odd_across, odd };
     using Parts = std::array<Grid<double>, 4>;
-    using Rows = std::array<std::vector<std::uint64_t>, 4>; // of the window, of those cells; over the whole image
+    using Rows = std::array<std::vector<std::uint64_t>, 4>; // window's rows of the four cells, over the whole image
 
-    // image: in parts of pixels.
+    // image: its size in parts of pixels.
     Window(const optics::PupilFilter& filter, const WaveWindow& window, ImageSize image)
         : filter_(filter), window_(window), image_(image), size_(in_parts(window.size, filter)),
           sums_(static_cast<std::size_t>(window.filters),
@@ -62,9 +62,9 @@ class WaveImage::Window {
     const optics::PupilFilter& filter_;
     const WaveWindow& window_;
     ImageSize image_;
-    ImageSize size_; // in parts of pixels
+    ImageSize size_; // parts of pixels
     std::vector<Spectrum> sums_;
-    std::vector<optics::TileTransfers> transfers_; // of each filter
+    std::vector<optics::TileTransfers> transfers_; // transfer functions for each filter
 };
 
 WaveImage::WaveImage(const optics::PupilFilter& filter, ImageSize pixels)
@@ -147,7 +147,8 @@ Grid<double> WaveImage::Window::pixels_of(const Spectrum& sum) const {
     Grid<Complex> whole(period_x, period_y);
     for (int row = 0; row < size_.rows; ++row) {
         for (int column = 0; column < size_.columns; ++column) {
-            // From the corner to the middle of the first part; what cosines count once stands at two frequencies.
+            // The phase moves from the corner to the middle of the first part; a cosine counted once stands at two
+            // frequencies.
             const double along = pi * column / period_x;
             const double across = pi * row / period_y;
             const Complex ahead = 4.0 * std::polar(1.0, across + along) * sum.ahead(column, row);
@@ -208,7 +209,8 @@ Grid<double> WaveImage::apply(const RowsOfCell& rows_of_cell) const {
     for (const WaveWindow& place :
          wave_windows(filter_.tiles().across(), pixels_, static_cast<int>(filter_.cells().parts))) {
         Window window(filter_, place, size_);
-        // Transformed side by side, added up in their order: the same bits on any number of cores.
+        // Cells are transformed side by side and added up in their order, so that the bits do not depend on the number
+        // of cores.
         const auto cores = static_cast<std::size_t>(core_count());
         for (std::size_t first = 0; first < groups.size(); first += cores) {
             const std::size_t count = std::min(cores, groups.size() - first);

@@ -1,4 +1,4 @@
-// The image that waves make of light sorted by pupil cells, on the host in double.
+// The wave image of light sorted by pupil cells, on the host in double.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -17,23 +17,23 @@
 
 namespace vkfv::trace {
 
-// Beyond its border the image continues as its mirror image, the pupil mirrored with it, so that no light is lost: of
-// an instrument that is symmetric about its axis the sum over the pixels stays the same, of others but for what the
-// asymmetry of the point spread carries over the border.
+// Beyond its border the image continues as its mirror image, with the pupil mirrored too, so that no light is lost. For
+// an instrument that is symmetric about its axis the sum over the pixels stays the same; for others it changes by the
+// part of the point spread's asymmetry that crosses the border.
 class WaveImage {
   public:
     // pixels: the detector's. The filter must outlive it.
     WaveImage(const optics::PupilFilter& filter, ImageSize pixels);
 
-    // How many numbers the sorted light has: cell after cell, row after row of parts of pixels.
+    // The number of numbers of the sorted light: cell after cell, row after row of parts of pixels.
     std::size_t numbers() const;
     std::size_t numbers_a_cell() const { return size_.count(); }
-    int columns() const { return size_.columns; } // of them, in a row
-    // Light of the pixels in the units of the sorted light.
+    int columns() const { return size_.columns; } // numbers in a row
+    // The light of the pixels, in the units of the sorted light.
     Grid<double> apply(std::span<const std::uint64_t> light) const;
-    // The same from cells that the calling thread asks for one after the other and does not keep: four times as many
-    // cells at a time as there are cores, and of each the rows of parts of pixels that a window of the field's tiles
-    // takes.
+    // Makes the light of the pixels from cells that the calling thread fetches one after the other and does not keep:
+    // four times as many cells at a time as there are cores, and of each the rows of parts of pixels that a window of
+    // the field's tiles needs.
     using RowsOfCell = std::function<std::vector<std::uint64_t>(int cell, int first_row, int rows)>;
     Grid<double> apply(const RowsOfCell& rows_of_cell) const;
 
@@ -44,10 +44,10 @@ class WaveImage {
 
     const optics::PupilFilter& filter_;
     ImageSize pixels_;
-    ImageSize size_; // in parts of pixels
+    ImageSize size_; // parts of pixels
 };
 
-// Light that the host sorts; many may add to it at a time. Without a filter nothing is kept.
+// Light that the host sorts; many threads may add to it at a time. Without a filter nothing is kept.
 class CellLight {
   public:
     CellLight(const std::optional<optics::PupilFilter>& filter, ImageSize pixels);
@@ -57,14 +57,15 @@ class CellLight {
 
   private:
     std::optional<WaveImage> image_;
-    ImageSize size_; // in parts of pixels
+    ImageSize size_; // parts of pixels
     std::vector<std::uint64_t> numbers_;
 };
 
-// The filter that the options ask for, of an instrument that is not turned round; none: images as rays make them.
+// The filter that the options ask for, for an instrument that is not reversed; none: images of rays.
 std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& instrument, const TraceOptions& options);
 
-// The same pixels with their light as waves make it, from that of WaveImage::apply(), in power_per_number W a unit.
+// The pixels with their light replaced by the wave image. light: from WaveImage::apply(), in units of power_per_number
+// W.
 PixelLight with_waves(PixelLight pixels, const Grid<double>& light, double power_per_number,
                       const optics::PupilFilter& filter);
 

@@ -12,8 +12,8 @@ namespace {
 
 using waves::f64::TileRamp;
 
-// In parts of pixels, of which the finest frequency has two at least: beside a window, and of that the half in which
-// windows fade.
+// Widths in parts of pixels; the finest frequency has at least two parts a period. margin_parts: beside a window;
+// fade_parts: half the width over which windows fade into each other.
 constexpr double margin_parts = 48;
 constexpr double fade_parts = 16;
 
@@ -23,7 +23,7 @@ struct Line {
     TileRamp ramp{};
 };
 
-// The windows along one side of so many pixels.
+// The windows along one side of `pixels` pixels.
 std::vector<Line> lines_of(int tiles, int pixels, int parts) {
     if (tiles == 1) {
         return {{.first = 0, .count = pixels, .ramp = {.from = 0, .width = 0, .fade = 1, .neighbours = 0}}};

@@ -30,14 +30,14 @@ struct Bounds {
         lower = glm::min(lower, other.lower);
         upper = glm::max(upper, other.upper);
     }
-    // Half the surface; 0 of nothing.
+    // Half the surface area; 0 for an empty box.
     float area() const {
         const glm::vec3 size = glm::max(upper - lower, glm::vec3(0));
         return size.x * size.y + size.y * size.z + size.z * size.x;
     }
 };
 
-// A box as the builder moves it: with its index, so that it never looks elsewhere.
+// A box in the order that the builder changes: with its index, so that the builder reads one place in memory.
 struct Reference {
     Bounds box;
     std::uint32_t index;
@@ -45,11 +45,11 @@ struct Reference {
     glm::vec3 centre() const { return 0.5F * box.lower + 0.5F * box.upper; }
 };
 
-// Of the tree of two that the wide one is made from.
+// A node of the binary tree from which the wide one is made.
 struct BinaryNode {
     Bounds box;
-    std::uint32_t first = 0; // child, its sibling follows; of a leaf: reference
-    std::uint32_t count = 0; // references of a leaf; 0: an inner node
+    std::uint32_t first = 0; // child, whose sibling follows; for a leaf: first reference
+    std::uint32_t count = 0; // number of a leaf's references; 0: an inner node
 };
 
 struct Range {
@@ -59,7 +59,8 @@ struct Range {
     int depth;
 };
 
-// Where the references part by the cheapest border between bins along the longest axis; begin or end: nowhere.
+// Partitions the references at the cheapest border between bins along the longest axis; returns where the upper part
+// begins. begin or end: no border was found.
 std::uint32_t part_by_area(std::vector<Reference>& references, const Range& range, const Bounds& centres) {
     struct Bin {
         Bounds box;
@@ -80,7 +81,7 @@ std::uint32_t part_by_area(std::vector<Reference>& references, const Range& rang
         bin.box.add(references[i].box);
         ++bin.count;
     }
-    std::array<float, bin_count> cost_above{}; // of all bins from this one on
+    std::array<float, bin_count> cost_above{}; // cost of all bins from this one on
     Bounds box;
     std::uint32_t count = 0;
     for (std::size_t bin = bin_count; bin-- > 1;) {
@@ -117,7 +118,7 @@ std::uint32_t part_by_median(std::vector<Reference>& references, const Range& ra
     return middle;
 }
 
-// Makes the node of a range: a leaf, whose middle is its end, or one whose children are the two sides of the middle.
+// Makes the node of a range and returns the middle: for a leaf its end, else the border between its two children.
 std::uint32_t split(std::vector<BinaryNode>& nodes, std::vector<Reference>& references, const Range& range,
                     std::size_t leaf_size) {
     const std::uint32_t count = range.end - range.begin;
@@ -131,7 +132,7 @@ std::uint32_t split(std::vector<BinaryNode>& nodes, std::vector<Reference>& refe
         nodes[range.node] = {box, range.begin, count};
         return range.end;
     }
-    // Medians halve, so they need as many levels as this; the heuristic may waste those beyond.
+    // Splits by medians need this many levels; the heuristic may use the levels beyond.
     const int halvings = std::bit_width(count - 1);
     std::uint32_t middle = range.begin;
     if (range.depth + halvings < hierarchy_depth) {
@@ -145,7 +146,7 @@ std::uint32_t split(std::vector<BinaryNode>& nodes, std::vector<Reference>& refe
     return middle;
 }
 
-// The nodes of a range, the first that of all of it. Ranges of no more than `whole` references are left to `parts`.
+// Builds the nodes of a range; the first is its root. Ranges of at most `whole` references are left to `parts`.
 std::vector<BinaryNode> build_nodes(std::vector<Reference>& references, Range range, std::size_t leaf_size,
                                     std::uint32_t whole, std::vector<Range>& parts) {
     std::vector<BinaryNode> nodes(1);
@@ -168,7 +169,8 @@ std::vector<BinaryNode> build_nodes(std::vector<Reference>& references, Range ra
     return nodes;
 }
 
-// A thread takes that many references as a whole. No core count is in it, so that every machine makes the same tree.
+// The number of references that a thread takes as a whole. It does not depend on the number of cores, so that every
+// machine makes the same tree.
 constexpr std::uint32_t references_a_part = 1U << 15;
 
 std::vector<BinaryNode> build_binary(std::vector<Reference>& references, std::size_t leaf_size) {
@@ -180,7 +182,7 @@ std::vector<BinaryNode> build_binary(std::vector<Reference>& references, std::si
         return build_nodes(references, parts[static_cast<std::size_t>(part)], leaf_size, 0, none);
     });
     for (std::size_t part = 0; part < parts.size(); ++part) {
-        // Its first node has a place already, the others follow.
+        // The part's first node has a place already, the others are appended.
         const auto base = static_cast<std::uint32_t>(nodes.size()) - 1;
         const auto placed = [base](BinaryNode node) {
             node.first += node.count == 0 ? base : 0;
@@ -192,7 +194,7 @@ std::vector<BinaryNode> build_binary(std::vector<Reference>& references, std::si
     return nodes;
 }
 
-// Up to eight nodes of two below one: the largest inner one is opened as long as there is room.
+// Up to eight descendants of a binary node: the largest inner one is opened as long as there is room.
 std::vector<std::uint32_t> open(const std::vector<BinaryNode>& nodes, std::uint32_t root) {
     std::vector<std::uint32_t> children = {root};
     while (children.size() < 8) {
@@ -217,7 +219,7 @@ std::vector<std::uint32_t> open(const std::vector<BinaryNode>& nodes, std::uint3
 
 constexpr std::uint32_t no_child = std::numeric_limits<std::uint32_t>::max();
 
-// The children by slots: again and again the pair of child and free slot that suit each other best.
+// Assigns children to slots: the pair of child and free slot that suit each other best comes first, and so on.
 std::array<std::uint32_t, 8> in_slots(const std::vector<BinaryNode>& nodes, std::vector<std::uint32_t> children,
                                       const Bounds& box) {
     std::array<std::uint32_t, 8> slots;
@@ -249,7 +251,7 @@ std::array<std::uint32_t, 8> in_slots(const std::vector<BinaryNode>& nodes, std:
     return slots;
 }
 
-// The node's frame of steps, none finer than the smallest normal float.
+// The node's frame of quantised coordinates, with no step finer than the smallest normal float.
 HierarchyNode frame_of(const Bounds& box) {
     HierarchyNode node{};
     node.origin = box.lower;
@@ -271,13 +273,13 @@ void set_box(HierarchyNode& node, std::size_t slot, const Bounds& box) {
     }
 }
 
-// A node that is to be made of one of two.
+// A wide node that is to be made of a binary one.
 struct Widening {
     std::uint32_t node;
     std::uint32_t source;
 };
 
-// Makes it, and gives places to the nodes in its slots, which are to be made next.
+// Makes the wide node, and reserves places for the nodes in its slots, which are to be made next.
 void widen(const std::vector<BinaryNode>& binary, const std::vector<Reference>& references, const Widening& widening,
            BoundingVolumeHierarchy& result, std::vector<Widening>& pending) {
     const Bounds& box = binary[widening.source].box;
@@ -307,7 +309,7 @@ void widen(const std::vector<BinaryNode>& binary, const std::vector<Reference>& 
     result.nodes[widening.node] = node;
 }
 
-// All below a node of two, the first node its own.
+// Widens the binary tree below `source`; node 0 is the root.
 BoundingVolumeHierarchy widen_all(const std::vector<BinaryNode>& binary, const std::vector<Reference>& references,
                                   std::uint32_t source) {
     BoundingVolumeHierarchy result;
@@ -321,7 +323,7 @@ BoundingVolumeHierarchy widen_all(const std::vector<BinaryNode>& binary, const s
     return result;
 }
 
-// Puts a tree where a place is kept for its first node.
+// Puts a tree where a place is reserved for its root.
 void graft(BoundingVolumeHierarchy& result, std::uint32_t place, const BoundingVolumeHierarchy& part) {
     const auto base = static_cast<std::uint32_t>(result.nodes.size()) - 1;
     const auto first_primitive = static_cast<std::uint32_t>(result.order.size());
@@ -335,7 +337,7 @@ void graft(BoundingVolumeHierarchy& result, std::uint32_t place, const BoundingV
     result.order.insert(result.order.end(), part.order.begin(), part.order.end());
 }
 
-// So many trees below the uppermost nodes are made side by side.
+// The number of subtrees below the uppermost nodes that are made in parallel.
 constexpr std::size_t grafts = 512;
 
 } // namespace

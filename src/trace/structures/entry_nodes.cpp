@@ -28,7 +28,7 @@ bool overlaps(const HierarchyNode& node, std::size_t slot, const Rectangle& rect
     return over;
 }
 
-// From a node that holds all over the rectangle down to the last one that does.
+// Descends from a node that holds all over the rectangle to the deepest node that does.
 std::uint32_t descend(const std::vector<HierarchyNode>& nodes, std::uint32_t from, const Rectangle& rectangle) {
     std::uint32_t reached = from;
     for (bool deeper = true; deeper;) {
@@ -49,14 +49,14 @@ std::uint32_t descend(const std::vector<HierarchyNode>& nodes, std::uint32_t fro
 
 EntryNodes entry_nodes(const std::vector<HierarchyNode>& nodes, glm::dvec2 lower, glm::dvec2 upper) {
     EntryNodes entries;
-    // As many of the finest cells as nodes: smaller ones would seldom be over fewer nodes.
+    // There are about as many of the finest cells as nodes: smaller cells would seldom have a deeper entry.
     entries.finest_level = std::min(most_levels, static_cast<int>(std::bit_width(nodes.size())) / 2);
     entries.nodes.resize(entry_level_begin(entries.finest_level + 1));
     for (int level = 0; level <= entries.finest_level; ++level) {
         const int side = 1 << level;
         const glm::dvec2 cell = (upper - lower) / static_cast<double>(side);
         const std::size_t first = entry_level_begin(level);
-        // What the coarser cell's node holds is all that is over a cell of it.
+        // The search begins at the coarser cell's node, which holds all over its four cells.
         const auto from = [&](int row, int column) {
             return level == 0 ? 0
                               : entries.nodes[entry_level_begin(level - 1) +

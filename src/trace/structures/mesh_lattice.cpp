@@ -11,13 +11,13 @@ namespace vkfv::trace {
 
 namespace {
 
-// A regular row of coordinates.
+// A regular sequence of coordinates.
 struct Axis {
     double first = 0; // mm
     double pitch = 0;
     int points = 0;
 
-    // The point next to a coordinate; -1: none is within the tolerance.
+    // Index of the point next to a coordinate; -1: none is within the tolerance.
     int at(double coordinate) const {
         const double place = (coordinate - first) / pitch;
         const double next = std::round(place);
@@ -27,7 +27,7 @@ struct Axis {
     }
 };
 
-// From the first to the last coordinate in steps of about `pitch`; nothing where that is none.
+// The axis from the first to the last coordinate in steps of about `pitch`; none if there is no such axis.
 std::optional<Axis> axis_of(double first, double last, double pitch) {
     const double steps = std::round((last - first) / pitch);
     if (!(pitch > 2 * lattice_tolerance) || steps < 1 || steps > 1e6) {
@@ -49,7 +49,7 @@ std::optional<MeshLattice> lattice_of(const specimen::Mesh& mesh) {
         lowest = glm::min(lowest, vertex);
         highest = glm::max(highest, vertex);
     }
-    // Any triangle is as wide and as deep as a cell.
+    // Any triangle is as wide and as deep as a cell, so the first gives the pitches.
     const glm::uvec3 any = mesh.triangles.front();
     const glm::vec3 a = mesh.vertices[any.x], b = mesh.vertices[any.y], c = mesh.vertices[any.z];
     const glm::vec3 extent = glm::max(a, glm::max(b, c)) - glm::min(a, glm::min(b, c));
@@ -79,13 +79,12 @@ std::optional<MeshLattice> lattice_of(const specimen::Mesh& mesh) {
         }
         float& height = lattice.field.heights(place.x, place.y);
         if (!std::isnan(height) && height != vertex.z) {
-            return {}; // a wall or a second surface
+            return {}; // there is a wall or a second surface
         }
         height = vertex.z;
         places.push_back(place);
     }
-    // Of each cell which corners' triangles there are: bit k for the one that lacks corner k, (0, 0), (1, 0), (0, 1)
-    // and (1, 1).
+    // The triangles that each cell has: bit k for the one that lacks corner k of (0, 0), (1, 0), (0, 1) and (1, 1).
     std::vector<std::uint8_t> covered(cells_x * cells_y);
     for (const glm::uvec3& triangle : mesh.triangles) {
         const std::array<glm::ivec2, 3> corners = {places[triangle.x], places[triangle.y], places[triangle.z]};
@@ -103,7 +102,7 @@ std::optional<MeshLattice> lattice_of(const specimen::Mesh& mesh) {
             ++lacking;
         }
         if (lacking == 4) {
-            return {}; // no three corners of one cell
+            return {}; // the triangle's corners are not three of one cell
         }
         covered[static_cast<std::size_t>(least.y) * cells_x + static_cast<std::size_t>(least.x)] |=
             static_cast<std::uint8_t>(1U << lacking);
@@ -111,7 +110,7 @@ std::optional<MeshLattice> lattice_of(const specimen::Mesh& mesh) {
     lattice.falling.reserve(covered.size());
     for (const std::uint8_t triangles : covered) {
         const bool rising =
-            triangles == 0b0110; // those that lack (1, 0) and (0, 1) share the way from (0, 0) to (1, 1)
+            triangles == 0b0110; // the triangles without (1, 0) and (0, 1) share the diagonal from (0, 0) to (1, 1)
         const bool falling = triangles == 0b1001;
         if (!rising && !falling) {
             return {};

@@ -1,4 +1,4 @@
-// Bounds in float of values in double: never inside of them.
+// Rounds bounds from double to float so that they enclose the double's.
 #pragma once
 
 #include <cmath>

@@ -12,11 +12,11 @@ namespace vkfv::trace {
 
 namespace {
 
-// 64 x 64 cells: a ray through relief as high as it is wide crosses few such blocks, and the padding to whole
-// blocks stays small.
+// Largest blocks have 64 x 64 cells: a ray through relief as high as it is wide crosses few such blocks, and the
+// padding to whole blocks stays small.
 constexpr int largest_level = 6;
 
-// Tiles along each side of an analytic surface without a lattice: a range is then within 1/180 of the
+// Number of tiles along each side of an analytic surface without a lattice: a range is then within 1/180 of the
 // footprint's side times the slope of the surface.
 constexpr int tiles_along_side = 128;
 
@@ -41,7 +41,7 @@ std::size_t first_of_level(const PyramidHeader& header, int level) {
     return 4 * (finest - (finest >> (2 * level))) / 3;
 }
 
-// cell_range(column, row) encloses the surface over a cell; rounding widens it.
+// Builds a pyramid. cell_range(column, row) encloses the surface over a cell; rounding widens it.
 Pyramid build(PyramidHeader header, double rounding, const std::function<glm::dvec2(int, int)>& cell_range) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     Pyramid pyramid;
@@ -73,7 +73,8 @@ Pyramid build(PyramidHeader header, double rounding, const std::function<glm::dv
     return pyramid;
 }
 
-// Four steps (2^-23) of the largest coordinate, as specimen_rounding() in shaders/device/specimen_hit.glsl.
+// Bound of float rounding: four steps (2^-23) of the largest coordinate, as specimen_rounding() in
+// shaders/device/specimen_hit.glsl.
 double float_rounding(double x_min, double x_max, double y_min, double y_max, double height) {
     return 4 * 0x1p-23 *
            std::max({std::abs(x_min), std::abs(x_max), std::abs(y_min), std::abs(y_max), std::abs(height)});
@@ -87,8 +88,9 @@ double largest_height(const specimen::HeightField& field) {
     return largest;
 }
 
-// Light at NA 0.45 goes half as far across as down. Where blocks are about as large as that over the whole relief, one
-// jump brings it close to the surface, and one over finer blocks to within a few cells of where it meets it.
+// The coarse level of ceilings. Light at NA 0.45 goes half as far across as down. Where blocks are about as large as
+// its way across through the whole relief, one jump brings it close to the surface, and one over finer blocks to within
+// a few cells of the meeting.
 int coarse_level_for(double relief, double cell, int cells) {
     const int suitable = std::ilogb(std::max(0.5 * relief / cell, 1.0));
     return std::clamp(
@@ -96,7 +98,7 @@ int coarse_level_for(double relief, double cell, int cells) {
         std::max(1, std::min(largest_level, static_cast<int>(std::bit_width(static_cast<unsigned>(cells - 1))))));
 }
 
-// Highest points of cells, row-major, to those of blocks of twice the side.
+// The highest points of blocks of twice the side. highest: of the blocks, row-major.
 Grid<float> halved(const Grid<float>& highest) {
     Grid<float> result((highest.columns + 1) / 2, (highest.rows + 1) / 2);
     std::ranges::fill(result.values, -std::numeric_limits<float>::infinity());
@@ -123,7 +125,7 @@ void append_ceilings(std::vector<float>& ceilings, const Grid<float>& highest) {
     }
 }
 
-// highest: of each cell, mm.
+// Makes the ceilings. highest: of each cell, mm; steepest: bound of the slope; relief: highest less lowest height, mm.
 Ceilings ceilings_over(Grid<float> highest, double cell_x, double cell_y, double steepest, double relief) {
     Ceilings result;
     kernels::CeilingsHeader& header = result.header;
@@ -167,7 +169,7 @@ Pyramid make_pyramid(const specimen::Analytic& surface, const physics::f64::Spec
     const double cell_y = (surface.y_max - surface.y_min) / cells.y;
     header.cell_x = static_cast<float>(cell_x);
     header.cell_y = static_cast<float>(cell_y);
-    // A slope turns the rounding of a place into one of the height.
+    // A slope turns the rounding of a lateral position into one of the height.
     const double height = std::max(std::abs(shape.bottom), std::abs(shape.top)) +
                           (surface.lattice ? largest_height(*surface.lattice) : 0);
     const double rounding =
@@ -205,7 +207,7 @@ Ceilings make_ceilings(const specimen::HeightField& field) {
     const double rounding =
         float_rounding(field.x_min, field.x_max(), field.y_min, field.y_max(), largest_height(field));
     Grid<float> highest(heights.columns - 1, heights.rows - 1);
-    double steepest = 0; // squared
+    double steepest = 0; // squared slope
     for (int row = 0; row < highest.rows; ++row) {
         for (int column = 0; column < highest.columns; ++column) {
             const double corner = heights(column, row);
@@ -225,7 +227,7 @@ Ceilings make_ceilings(const specimen::HeightField& field) {
                                std::numeric_limits<float>::infinity());
         }
     }
-    // Far more than float arithmetic makes of a slope.
+    // The factor exceeds float arithmetic's error of a slope by far.
     return ceilings_over(std::move(highest), field.pitch_x, field.pitch_y, 1.0001 * std::sqrt(steepest),
                          static_cast<double>(top) - static_cast<double>(bottom));
 }
@@ -238,7 +240,7 @@ Ceilings make_ceilings(const Pyramid& pyramid, double relief) {
             highest(column, row) = pyramid.range(0, column, row).y;
         }
     }
-    constexpr double never = 1e30; // a march notices by itself that it escapes
+    constexpr double never = 1e30; // a march finds out by itself that it escapes
     return ceilings_over(std::move(highest), header.cell_x, header.cell_y, never, relief);
 }
 

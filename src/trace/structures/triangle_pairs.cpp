@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
 
-// The triangles at each vertex, one list behind the other.
+// The triangles at each vertex, one list after the other.
 struct Fans {
-    std::vector<std::uint32_t> first; // of each vertex, and the end
+    std::vector<std::uint32_t> first; // place of each vertex's first triangle, and the end
     std::vector<std::uint32_t> triangles;
 };
 
@@ -41,7 +41,7 @@ Fans fans_of(std::size_t vertices, std::span<const glm::uvec3> triangles) {
     return fans;
 }
 
-// Half the surface of the box around a pair.
+// Half the surface area of the box around a pair.
 float area(const TrianglePair& pair) {
     const vulkan::Box box = pair.box();
     const glm::vec3 size = box.maximum - box.minimum;
@@ -61,7 +61,7 @@ vulkan::Box TrianglePair::box() const {
 
 namespace {
 
-// Pairs of the triangles from `begin` up to `end` with each other.
+// Pairs the triangles from `begin` up to `end` with each other.
 std::vector<TrianglePair> pair_between(std::span<const glm::vec3> vertices, std::span<const glm::uvec3> triangles,
                                        const Fans& fans, std::size_t begin, std::size_t end) {
     std::vector<bool> taken(end - begin, false);
@@ -76,7 +76,7 @@ std::vector<TrianglePair> pair_between(std::span<const glm::vec3> vertices, std:
         float least = std::numeric_limits<float>::infinity();
         std::uint32_t partner = no_triangle;
         for (int side = 0; side < 3; ++side) {
-            const std::uint32_t a = own[side]; // the side opposite to b
+            const std::uint32_t a = own[side]; // side opposite to b
             const std::uint32_t b = own[(side + 1) % 3];
             const std::uint32_t c = own[(side + 2) % 3];
             for (std::uint32_t k = fans.first[a]; k < fans.first[a + 1] && a != c; ++k) {
@@ -106,7 +106,7 @@ std::vector<TrianglePair> pair_between(std::span<const glm::vec3> vertices, std:
 } // namespace
 
 std::vector<TrianglePair> pair_triangles(std::span<const glm::vec3> vertices, std::span<const glm::uvec3> triangles) {
-    // A thread takes so many triangles at a time, which find no partner beyond.
+    // The number of triangles that a thread takes at a time; they find no partner beyond.
     constexpr std::size_t triangles_a_part = std::size_t{1} << 16;
     const Fans fans = fans_of(vertices.size(), triangles);
     const auto parts =
