@@ -45,7 +45,7 @@ constexpr double space = 0.3;
 
 struct Letter {
     std::string character;
-    images::Ink ink; // bounding box and pixels of the letter; empty for a space
+    images::Ink ink; // bounding box of the letter; empty for a space
 };
 
 std::vector<Letter> letters_of(const Plateaus& d, int font_size, const SourceLocation& where) {
