@@ -12,12 +12,12 @@ namespace {
 constexpr int bands = 16;
 // An exposure so short that dark current does not contribute to the measurements with light.
 constexpr double short_exposure = 1e-5;    // s
-constexpr double beyond_saturation = 1.15; // of the full well, end of the series
+constexpr double beyond_saturation = 1.15; // end of the series, relative to the full well
 constexpr int peak_exposures = 25;
 constexpr double peak_reach = 1.5; // in standard deviations of the charge about the largest variance
 constexpr int dark_exposures = 6;
-constexpr double dark_share = 0.05; // of the full well, dark charge at the longest exposure
-constexpr double flat_share = 0.5;  // of the full well
+constexpr double dark_share = 0.05; // dark charge at the longest exposure, relative to the full well
+constexpr double flat_share = 0.5;  // charge of the flat stack, relative to the full well
 
 int band_of(int row, int rows) {
     return row * bands / rows;

@@ -15,7 +15,7 @@ constexpr double quantisation_variance = 1.0 / 12; // DN^2
 constexpr double least_dark_variance = 0.24;            // DN^2
 constexpr double bound_of_dark_noise = 0.40;            // DN
 constexpr double dark_deviation_of_quantisation = 0.49; // DN
-constexpr double linear_share = 0.7;                    // of saturation, range of the fits of gain and responsivity
+constexpr double linear_share = 0.7; // end of the fits of gain and responsivity, relative to saturation
 constexpr double linearity_from = 0.05, linearity_to = 0.95;
 constexpr double decibels = 20;
 

@@ -17,9 +17,9 @@ struct Dimension {
     // The nominal value; NaN if there is none.
     double nominal = surface::undefined;
     double value = surface::undefined; // NaN if the map covers it too little or too little of it is measured
-    double standard_deviation = surface::undefined; // of one profile's value
-    double standard_error = surface::undefined;     // of the value, from the scatter of the heights alone
-    int profiles = 0;                               // number of profiles in the mean; 0: one fit to all points
+    double standard_deviation = surface::undefined; // scatter of one profile's value
+    double standard_error = surface::undefined; // standard error of the value, from the scatter of the heights alone
+    int profiles = 0;                           // number of profiles in the mean; 0: one fit to all points
 };
 
 // Evaluates the dimensions of a feature. All maps on one grid have the same dimensions in the same order, so those of

@@ -69,7 +69,7 @@ struct Sinusoid {
 // Type ACS: the sum of two sinusoids at right angles.
 struct CrossSinusoid {
     Frame frame;
-    double amplitude = 0; // of each sinusoid
+    double amplitude = 0; // amplitude of each sinusoid
     double period_u = 0;
     double period_v = 0;
 };

@@ -189,7 +189,7 @@ std::vector<Dimension> evaluate_found(const HeightMap& map, Sought sought) {
     if (sought == Sought::sphere) {
         if (const auto sphere = found_sphere(map))
             dimensions = evaluate(map, *sphere);
-        // Such a small radius is not determined by the heights, even if the fit succeeds.
+        // The heights do not determine so small a radius, even if the fit succeeds.
         if (!dimensions.empty() &&
             !(dimensions.front().value >= least_radius_in_errors * dimensions.front().standard_error))
             dimensions.clear();

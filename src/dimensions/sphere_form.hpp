@@ -13,7 +13,7 @@ namespace vkfv::dimensions {
 struct SphereForm {
     surface::Sphere sphere;
     double radius_error = 0;   // standard error, for correlated residues (correlated_errors.hpp)
-    double peak_to_valley = 0; // of the points' signed distances from the sphere
+    double peak_to_valley = 0; // range of the points' signed distances from the sphere
     double rms = 0;
 };
 

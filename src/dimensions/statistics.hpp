@@ -10,8 +10,8 @@ namespace vkfv::dimensions {
 // A mean of numbers and its scatter; NaN if there are too few numbers.
 struct Mean {
     double mean = surface::undefined;
-    double standard_deviation = surface::undefined; // of a single number
-    double standard_error = surface::undefined;     // of the mean
+    double standard_deviation = surface::undefined; // scatter of a single number
+    double standard_error = surface::undefined;     // standard error of the mean
     int count = 0;
 };
 

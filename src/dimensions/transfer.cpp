@@ -88,7 +88,7 @@ std::vector<Transfer> chirp_transfer(const HeightMap& map, const Chirp& chirp) {
 std::vector<Transfer> star_transfer(const HeightMap& map, const Star& star) {
     constexpr int rings = 12;
     constexpr double least_points = 4, half_width = 0.05;
-    constexpr double inner_share = 0.9; // of the radius, as pixels and focus windows round the rim
+    constexpr double inner_share = 0.9; // share of the radius: pixels and focus windows round the rim
     const double outermost = inner_share * star.radius / (1 + half_width);
     const double innermost = least_points * std::max(map.pitch_x, map.pitch_y) * star.petals / (2 * pi);
     std::vector<Transfer> transfers;

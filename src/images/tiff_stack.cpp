@@ -141,7 +141,7 @@ struct Format {
     std::size_t count_bytes() const { return big ? 8 : 2; }
 };
 
-constexpr std::size_t alignment = 16; // of data outside a directory
+constexpr std::size_t alignment = 16; // alignment of data outside a directory
 
 std::size_t aligned(std::size_t size) {
     return (size + alignment - 1) / alignment * alignment;

@@ -44,7 +44,7 @@ FileMesh read_gltf(const std::filesystem::path& file, const SourceLocation& ment
 struct FilePoints {
     std::vector<glm::dvec3> points;               // finite, at least one
     std::size_t not_measured = 0;                 // number of such lines
-    std::array<std::optional<double>, 3> units{}; // of x, y and z in mm, if the column names state them
+    std::array<std::optional<double>, 3> units{}; // units of x, y and z in mm, if the column names state them
     std::string column_names{};                   // line of the column names; empty if it states no units
 };
 FilePoints read_points(const std::filesystem::path& file, const SourceLocation& mention);

@@ -22,7 +22,7 @@ std::string positive_um();
 // Throws InputError for a key of [specimen] ("radius_um") unless the condition holds. where: place of the table.
 void require(bool condition, const SourceLocation& where, const std::string& key, double found,
              const std::string& expected);
-// As require(), for a length in mm under a key in um.
+// Throws InputError like require(), for a length in mm under a key in um.
 void require_um(bool condition, const SourceLocation& where, const std::string& key, double mm,
                 const std::string& expected);
 

@@ -114,7 +114,7 @@ double from_zero(const RationalFit& fit, double t) {
 
 RationalFit fit_rational_from_zero(const std::function<double(double)>& f, std::size_t highest_degree) {
     constexpr int points = 120;
-    constexpr double softening = 0.3; // of f in the weight 1 / (f + softening) of an error
+    constexpr double softening = 0.3; // errors have the weight 1 / (f + softening)
     const Samples fitted = sample(f, points, 0.5), between = sample(f, 3 * points, 0.25);
     RationalFit best;
     best.error = std::numeric_limits<double>::infinity();

@@ -31,7 +31,7 @@ struct TabulatedBsdf {
     // incidences given in the table, weighted by projected solid angles. None with one incidence.
     std::optional<double> reciprocity_deviation() const;
 
-    std::size_t given_incidences = 0; // of the file; further incidences repeat the last one up to grazing
+    std::size_t given_incidences = 0; // number in the file; further incidences repeat the last one up to grazing
 };
 
 // Reads a CSV file with the columns incidence_deg, scatter_deg, azimuth_deg and bsdf_per_sr, or without azimuth_deg if

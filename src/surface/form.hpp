@@ -15,7 +15,7 @@ struct Form {
     // offset and tilt, and a surface alone has no truth.
     enum class Kind { none, plane, polynomial, sphere, truth };
     Kind kind = Kind::plane;
-    int degree = 0; // of the polynomial
+    int degree = 0; // degree of a polynomial
 
     bool operator==(const Form&) const = default;
 };

@@ -74,7 +74,7 @@ Taps mean(double place, double width, int points) {
 }
 
 Axis axis(double first, double pitch, int points, double target_first, double target_pitch, int target_points) {
-    constexpr double rounding = 1e-9; // of a coordinate, per point
+    constexpr double rounding = 1e-9; // tolerance of coordinates, per point
     Axis result{.averages = target_pitch > 1.01 * pitch, .taps = {}};
     for (int k = 0; k < target_points; ++k) {
         double place = (target_first + k * target_pitch - first) / pitch;

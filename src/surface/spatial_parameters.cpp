@@ -70,7 +70,7 @@ Falls falls_of_autocorrelation(const HeightMap& map, const HeightParameters& par
         return sum_and_pairs.imag() > 0.5 ? sum_and_pairs.real() / sum_and_pairs.imag() : 1;
     };
     const int columns = map.columns() / 2, rows = map.rows() / 2;
-    constexpr double rounding = 1e-9; // of a lag along an axis, whose other component is rarely exactly zero
+    constexpr double rounding = 1e-9; // tolerance for lags along an axis, whose other component is rarely exactly zero
     // Neighbouring directions differ by a point at the greatest lag; opposite lags are equivalent.
     const int directions = 4 * std::max({columns, rows, 1});
     const auto found = parallel_list(directions, [&](int direction) {

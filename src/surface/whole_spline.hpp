@@ -36,7 +36,7 @@ class WholeSpline {
 
     int columns_, rows_;
     SplineEnds ends_;
-    Grid<double> transmission_;            // of the filter with mirrored ends
+    Grid<double> transmission_;            // transmission of the filter with mirrored ends
     double missing_x_ = 0, missing_y_ = 0; // 2 a^4
     std::vector<double> end_x_, end_y_;    // slope of each cosine at its end
     Slopes diagonal_;

@@ -10,7 +10,7 @@ namespace vkfv::surface {
 namespace {
 
 constexpr std::string_view gsf_magic = "Gwyddion Simple Field 1.0\n";
-constexpr std::size_t alignment = 4; // of the points, reached by one to four NULs before them
+constexpr std::size_t alignment = 4; // offset of the points is a multiple, reached by one to four NULs
 constexpr std::string_view gsf_provenance_key = "VkfvProvenance"; // followed by the number of the provenance's lines
 constexpr std::string_view gsf_title = "Height";
 

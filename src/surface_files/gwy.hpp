@@ -18,7 +18,7 @@ SurfaceFile parse_gwy(std::string_view bytes, const std::filesystem::path& file)
 // An image of a file, with its title and unit.
 struct GwyChannel {
     std::string title;
-    std::string unit = "m"; // of the values; with "m" the map's mm are converted, other values are written unchanged
+    std::string unit = "m"; // "m": the map's mm are converted to it; values of other units are written unchanged
     HeightMap map;
 };
 

@@ -12,7 +12,7 @@ namespace vkfv::surface {
 
 // The statements of a header, lengths in mm; members are none where it states nothing.
 struct TableHeader {
-    std::optional<double> unit;             // of heights
+    std::optional<double> unit;             // unit of heights, mm
     std::optional<double> pitch_x, pitch_y; // between points
     std::optional<double> cells;            // pitch in the unit of the heights (ESRI grids)
     std::optional<double> width, height;    // extent of the whole grid

@@ -57,9 +57,9 @@ std::string read_file(const std::filesystem::path& path, const FileRequest& requ
 // RunError, with the reason and the remedy.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-// As write_file(), for a file that may be larger than the memory: `parts` passes its bytes in order, and the content
-// read back is compared by its checksum, which is returned (SHA-256, 64 hexadecimal digits). If `parts` throws, the
-// previous file remains.
+// Writes a file like write_file(), which may be larger than the memory: `parts` passes its bytes in order, and the
+// content read back is compared by its checksum, which is returned (SHA-256, 64 hexadecimal digits). If `parts` throws,
+// the previous file remains.
 using AddBytes = std::function<void(std::string_view)>;
 std::string write_file_in_parts(const std::filesystem::path& path, const std::function<void(const AddBytes&)>& parts);
 

@@ -46,7 +46,7 @@ class ResultFolder {
     // and may have sub-folders. Several threads may write different files. Throws RunError, and FolderRemoved if the
     // folder, or one in it, was removed since.
     void write(const std::filesystem::path& name, std::string_view bytes);
-    // As write(), by write_file_in_parts().
+    // Writes a file like write(), by write_file_in_parts().
     void write_in_parts(const std::filesystem::path& name, const std::function<void(const AddBytes&)>& parts);
     // Adds a file that is known to be complete to the list.
     void note(const std::filesystem::path& name, std::string_view bytes);

@@ -21,7 +21,7 @@ std::vector<std::byte> read_cached(std::string_view name);
 // (no folder, no permission, a full disk) are ignored, as they cost only time.
 void write_cached(std::string_view name, std::span<const std::byte> data);
 
-// Of the cached files whose names begin so, removes all but the `most` written last.
+// Removes cached files whose names begin so, except the `most` that were written last.
 void thin_out_cached(std::string_view beginning, std::size_t most);
 
 } // namespace vkfv

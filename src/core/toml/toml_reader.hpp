@@ -136,7 +136,7 @@ class TomlTable {
 
     // Throws InputError for this key's value, for conditions that involve several values.
     [[noreturn]] void fail(std::string_view key, std::string expected, std::string remedy) const;
-    // As fail(), but while problems are collected the problem is noted, once for each key.
+    // Throws like fail(), but while problems are collected the problem is noted instead, once for each key.
     void note(std::string_view key, std::string expected, std::string remedy) const;
 
   private:

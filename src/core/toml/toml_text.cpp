@@ -95,7 +95,7 @@ std::optional<std::string> nearest_word(std::string_view word, const std::vector
     std::size_t smallest = furthest + 1;
     for (const auto& candidate : candidates) {
         const std::size_t steps = distance(candidate);
-        // As many steps as letters mean that the words have nothing in common.
+        // Words that differ by as many steps as they have letters have nothing in common.
         if (steps < smallest && steps < std::max(word.size(), candidate.size())) {
             smallest = steps;
             nearest = candidate;

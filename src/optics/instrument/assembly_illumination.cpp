@@ -160,7 +160,7 @@ double field_stop_magnification(const AxialLayout& layout, const std::vector<Sur
     const RayTransfer before = transfer_to_surface(train, stop_index);
     const RayTransfer whole =
         transfer_of_train(train).then(free_space(layout.working_distance, layout.object_index.centre));
-    // As whole = after * before, after = whole * before^-1; the first element of `after` is the stop's magnification.
+    // From whole = after * before follows after = whole * before^-1, whose first element is the stop's magnification.
     return whole.a * before.d - whole.b * before.c;
 }
 

@@ -24,7 +24,7 @@ struct Room {
     physics::f64::SourceFrame source;
 
     using Box = BoxTree::Box;
-    Box bounds(std::size_t element) const; // of an element that is a surface; encloses it, its mount and rim
+    Box bounds(std::size_t element) const; // box around a surface element, its mount and rim
     void add_mesh(const PlacedMesh& mesh);
     void grow_facet_tree(); // builds the tree over the facets of all meshes
 };

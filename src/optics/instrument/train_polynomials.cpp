@@ -271,7 +271,7 @@ glm::dvec2 sum_at(const Factors& factors, const Sample& sample) {
 // degree, and the largest error.
 std::pair<Factors, double> fit_factors(const std::vector<Sample>& passing, const std::vector<Sample>& passed,
                                        glm::dvec2 (*value)(const Sample&), double allowed) {
-    // As the place lies along x, the y component determines the direction's factor alone.
+    // The place lies along x, so the y component determines the direction's factor alone.
     std::vector<double> of_place, of_direction, by_place, by_direction;
     for (std::vector<double>* column : {&of_place, &of_direction, &by_place, &by_direction}) {
         column->reserve(passing.size());

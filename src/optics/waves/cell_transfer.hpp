@@ -71,7 +71,7 @@ class CellTransfer {
     // Divides the pupil of the axis into so many cells across, for pixels without parts. Throws InputError if no light
     // passes.
     CellTransfer(const Instrument& instrument, int cells);
-    // As the constructor above, with wavefronts that wavefronts_for_cells() has traced already.
+    // Divides the pupil of the axis, with wavefronts that wavefronts_for_cells() has traced already.
     CellTransfer(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells);
     // The transfer functions of another point of the field, from its wavefronts, which must pass light. Cells,
     // frequencies and steps are those on the axis; the pupil is centred on the point's own chief ray.

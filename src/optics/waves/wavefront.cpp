@@ -237,7 +237,7 @@ void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnific
         coefficients[0] = coefficients[1] = coefficients[static_cast<std::size_t>(degree) + 1] = 0;
         // Rays that were not fitted test whether the degree suffices.
         constexpr double enough = 1e-6;       // wavelengths
-        constexpr double enough_slope = 5e-6; // of the largest slope
+        constexpr double enough_slope = 5e-6; // relative to the largest slope
         const Samples others = sample(view, degree / 2 + 1, 2 * degree + 1, 0.5);
         double path_error = 0;
         double slope_error = 0;

@@ -33,7 +33,7 @@ class Wavefront {
     // height: mm, of the object plane above best focus on the axis (z = 0 of a scan).
     Wavefront(const Instrument& instrument, const SpectralNode& wavelength, glm::dvec2 field = glm::dvec2(0),
               double height = 0);
-    // As above, with the plane of best focus `focus` (mm) above the paraxial object plane.
+    // Traces the wavefront with the plane of best focus `focus` (mm) above the paraxial object plane.
     Wavefront(const Imaging& imaging, double magnification, double focus, const SpectralNode& wavelength,
               glm::dvec2 field = glm::dvec2(0), double height = 0);
 
