@@ -268,7 +268,8 @@ physics::f64::Lobe with_numbers(physics::f64::Lobe lobe, const TabulatedBsdf& bs
     lobe.table[1] = static_cast<double>(incidences);
     lobe.table[2] = static_cast<double>(scatters);
     lobe.table[3] = static_cast<double>(azimuths);
-    lobe.table[4] = *std::ranges::max_element(bsdf.values); // peak value, for the backward estimator's choice of lobe
+    lobe.table[4] =
+        *std::ranges::max_element(bsdf.values); // peak value, by which the backward estimator finds the sharpest lobe
     const auto add = [&](double number) { numbers.push_back(static_cast<float>(number)); };
     for (const auto* angles : {&bsdf.incidences, &bsdf.scatters, &bsdf.azimuths}) {
         std::ranges::for_each(*angles, add);

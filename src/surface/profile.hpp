@@ -32,23 +32,23 @@ Profile remove_long_waves(const Profile& profile, double nesting_index);
 // their mean. Means over the sections are NaN if a section has no point: the 2021 edition has five section lengths by
 // default where ISO 4287:1997 had sampling lengths.
 struct ProfileParameters {
-    double ra = undefined;  // arithmetic mean height
-    double rq = undefined;  // root mean square height
-    double rz = undefined;  // highest peak's height plus deepest pit's depth, mean over the sections
-    double rp = undefined;  // highest peak's height, mean over the sections
-    double rv = undefined;  // deepest pit's depth, positive, mean over the sections
-    double rt = undefined;  // from the deepest pit to the highest peak of the whole profile
-    double rsk = undefined; // skewness, 1
-    double rku = undefined; // kurtosis, 1
-    double rdq = undefined; // root mean square slope between neighbours, 1
-    double rsm = undefined; // mean spacing of the profile elements, mm (profile_elements.hpp)
-    double rc = undefined;  // mean height of the profile elements
-    double rdc = undefined; // material ratio height difference, from 2 % to 98 %
-    double rk = undefined;  // core height, reduced peak height and reduced pit depth, and the shares of the length
-    double rpk = undefined; // above the core and above the pits, 0 to 1 (material_ratio.hpp)
-    double rvk = undefined;
-    double rmrk1 = undefined;
-    double rmrk2 = undefined;
+    double ra = undefined;    // arithmetic mean height
+    double rq = undefined;    // root mean square height
+    double rz = undefined;    // highest peak's height plus deepest pit's depth, mean over the sections
+    double rp = undefined;    // highest peak's height, mean over the sections
+    double rv = undefined;    // deepest pit's depth, positive, mean over the sections
+    double rt = undefined;    // from the deepest pit to the highest peak of the whole profile
+    double rsk = undefined;   // skewness, 1
+    double rku = undefined;   // kurtosis, 1
+    double rdq = undefined;   // root mean square slope between neighbours, 1
+    double rsm = undefined;   // mean spacing of the profile elements, mm (profile_elements.hpp)
+    double rc = undefined;    // mean height of the profile elements
+    double rdc = undefined;   // material ratio height difference, from 2 % to 98 %
+    double rk = undefined;    // core height (material_ratio.hpp)
+    double rpk = undefined;   // reduced peak height
+    double rvk = undefined;   // reduced pit depth
+    double rmrk1 = undefined; // share of the length above the core, 0 to 1
+    double rmrk2 = undefined; // share of the length above the pits, 0 to 1
 };
 
 // The parameters of a profile. `sections`: the number of equal section lengths into which the profile is divided

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double outside_margin = 1.02; // outlines are sampled at finitely many places: see apertures.cpp
 constexpr double inside_margin = 0.99;
-// Towards the field's edge the region from which all light comes may shrink to this share of its size on the axis.
+// Towards the field's edge the region of crossings that certainly receive light may shrink to this share of its size on
+// the axis.
 constexpr double inside_share = 0.97;
 
 // The position (mm) and slope on the detector of a ray on an outline's rim.
@@ -136,7 +137,7 @@ ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double fie
 // The source as points of the specimen see it, in crossings of their rays (BackwardOptics).
 struct SeenSource {
     double outer = 0;        // no light comes from outside this crossing
-    double inner = 0;        // all directions inside this crossing receive light
+    double inner = 0;        // all light inside this crossing comes from the source
     double inner_radius = 0; // mm, radius of the field in which `inner` holds
 };
 
