@@ -20,9 +20,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // pitch.
 constexpr double selection_margin = 1e-12;
 
-// A ray with the watertight triangle test of S. Woop, C. Benthin, I. Wald, JCGT 2 (2013) 1: in coordinates sheared so
-// that the ray is the third axis, the edge functions of neighbours have exactly opposite values on their common edge,
-// and zero counts as inside; no ray passes between two triangles.
+// A ray with the triangle test of S. Woop, C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2, 1
+// (2013): in coordinates sheared so that the ray is the third axis, the edge functions of neighbours have exactly
+// opposite values on their common edge, and zero counts as inside; no ray passes between two triangles.
 class Ray {
   public:
     Ray(const glm::dvec3& origin, const glm::dvec3& direction) : origin_(origin), direction_(direction) {

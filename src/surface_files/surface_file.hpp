@@ -36,10 +36,10 @@ enum class Checksums { must_hold, may_be_stale };
 // Reads X3P, SUR, SDF, AL3D, GSF, GWY, OPD, MetroPro's DAT, NMS, PLU, a TIFF or OpenEXR image or NPY array of heights,
 // recognized by its first bytes, or else a table of numbers, recognized by its name's ending. `scale` is for images
 // that vkfv did not write, arrays and tables, which need both of its parts; if the file has a scale of its own, a
-// second one is an error. Implausible heights cause a warning: farther from the median than 10^4 times the range of the
-// middle 80 % of the heights, or than 1 m. All warnings are in the log too. Throws InputError for anything that is not
-// a complete and valid file; the memory used is bounded by the file's size and, for packed files, by the number of
-// points in its header.
+// second one is an error. Implausible heights cause a warning: farther from the median than 10^4 times the range
+// from the 10 to the 90 % quantile of the heights, or than 1 m. All warnings are in the log too. Throws InputError for
+// anything that is not a complete and valid file; the memory used is bounded by the file's size and, for packed files,
+// by the number of points in its header.
 SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale = {},
                          Checksums checksums = Checksums::must_hold);
 
