@@ -11,8 +11,9 @@ namespace {
 
 using surface::HeightMap;
 
-// Adds to squared distances the squared distance along one line, by the lower envelope of parabolas (P. Felzenszwalb,
-// D. Huttenlocher, "Distance transforms of sampled functions", Theory of Computing 8 (2012)). pitch: mm.
+// Extends squared distances along one line: each value becomes the minimum, over the line, of a value plus the squared
+// distance to it, by the lower envelope of parabolas (P. Felzenszwalb, D. Huttenlocher, "Distance transforms of sampled
+// functions", Theory of Computing 8 (2012)). pitch: mm.
 void transform_line(std::vector<double>& values, double pitch) {
     const auto n = static_cast<int>(values.size());
     std::vector<int> parabola(values.size());

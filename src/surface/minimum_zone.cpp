@@ -17,7 +17,7 @@ struct Point {
 };
 
 struct Tilt {
-    double x = 0, y = 0; // slopes
+    double x = 0, y = 0; // slopes along x and y
 };
 
 double over(const Point& point, const Tilt& tilt) {

@@ -9,7 +9,7 @@ namespace vkfv::surface {
 // The metadata of a surface; empty members are unknown.
 struct Provenance {
     std::string creator{};                                    // program or person
-    std::string manufacturer{}, model{}, serial{}, version{}; // instrument's
+    std::string manufacturer{}, model{}, serial{}, version{}; // names of the instrument
     std::string date{};    // date of the measurement, xsd:dateTime ("2026-01-31T12:00:00Z")
     std::string comment{}; // may have several lines
 

@@ -10,7 +10,7 @@
 
 namespace vkfv {
 
-// Work whose progress is counted, from construction to destruction. Only one counts at a time: others within it have no
+// Work whose progress is counted, from construction to destruction. Only one counts at a time: others meanwhile have no
 // effect.
 class CountedWork {
   public:

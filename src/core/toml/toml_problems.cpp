@@ -152,7 +152,7 @@ void TomlTable::State::note_unknown() {
         auto unknown = problem(
             name, &node, known.empty() ? "no key here" : fmt::format("a known key (one of {})", fmt::join(known, ", ")),
             meant ? fmt::format("Did you mean \"{}\"? Correct or remove it.", *meant) : "Remove it.");
-        // An inserted override has its own origin; only for other values the place of the key is more exact.
+        // The key's place, if known, is more exact than the value's; an inserted override keeps its own origin.
         if (key.source().begin) {
             unknown.where = document->place(key.source());
         }

@@ -24,7 +24,7 @@ constexpr std::string_view without_geometry[] = {
     "VANN", "ZVDX", "ZVDY", "ZVCX", "ZVCY", "ZVAN", "WWGT", "WWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN",
     "WAVN", "AUTH", "DBDT", "SCOL", "TOLE", "LUID", "SSID", "FCOM", "IWDP", "BLNK", "TOL",  "MOFF", "DMFS"};
 
-// Keywords of a surface on which no lens depends. Solves, pick-ups and variables (MAZH, PZUP, PPAR, VDSZ, VPAR, VCON,
+// Keywords of surfaces that affect no lens. Solves, pick-ups and variables (MAZH, PZUP, PPAR, VDSZ, VPAR, VCON,
 // TOLE) leave their outcome in the value itself; MEMA is the glass's edge beyond the aperture.
 constexpr std::string_view without_geometry_of_surfaces[] = {"COMM", "FIMP", "HIDE", "MIRR", "SLAB", "POPS", "COAT",
                                                              "MEMA", "MAZH", "PZUP", "PPAR", "VDSZ", "VPAR", "VCON"};

@@ -87,8 +87,9 @@ double chief_slope_per_position(const Instrument& instrument) {
 
 } // namespace
 
-// The pupil of one wavelength on a lattice that maps p + lambda f / 2 onto itself, for frequencies f that are multiples
-// of the cutoff over `half`. No point lies on an axis, where mirror images would share a cell's edge.
+// The pupil of one wavelength on a lattice whose points, shifted by lambda f / 2, are lattice points again for
+// frequencies f that are multiples of the cutoff over `half`. No point lies on an axis, where mirror images would share
+// a cell's edge.
 struct CellTransfer::Lattice {
     // middle: the p at the lattice's centre; slope: that of its chief ray at the detector, minus that of the chief ray
     // relative to which light is sorted into cells.

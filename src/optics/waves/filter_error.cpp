@@ -131,8 +131,8 @@ struct Phase {
     Complex step = 1;
 };
 
-// The pupil of one wavelength on a lattice about the chief ray that maps p + lambda f / 2 onto itself for the
-// frequencies 2 unit (dx, dy), at heights within `reach` (mm).
+// The pupil of one wavelength on a lattice about the chief ray whose points, shifted by lambda f / 2, are lattice
+// points again for the frequencies 2 unit (dx, dy), at heights within `reach` (mm).
 class PupilLattice {
   public:
     PupilLattice(const Wavefront& wavefront, const physics::f64::PupilCells& cells, double unit, double reach)
@@ -351,7 +351,7 @@ PointWaves point_for_filter(const Instrument& instrument, glm::dvec2 field) {
 
 namespace {
 
-// Searches filters of an instrument and their errors.
+// Searches the cheapest sufficient filter of an instrument, by its contrast errors.
 class FilterSearch {
   public:
     explicit FilterSearch(const Instrument& instrument)
