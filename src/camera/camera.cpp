@@ -100,7 +100,7 @@ ImageLight Camera::light_of(const Grid<double>& flux, const Grid<double>& standa
     ImageLight light;
     double camera_variance = 0, ray_variance = 0;
     for (const double power : flux.values) {
-        // wave-filtered light of few rays may be below zero
+        // Wave-filtered light of few rays may be below zero.
         const double electrons = std::max(0.0, power * electrons_per_watt);
         light.mean += electrons / count;
         if (electrons > saturation_charge()) {

@@ -84,7 +84,7 @@ class Camera {
     double quantum_efficiency() const { return electrons_per_joule_ / photons_per_joule_; }
     double clip() const { return clip_; }             // e-, the largest charge of a pixel
     double highest_value() const { return highest_; } // DN
-    // e-, charge at the highest grey value; the converter saturates first if it is below the clip
+    // The charge (e-) at the highest grey value; the converter saturates first if it is below the clip.
     double converter_end() const;
     double saturation_charge() const;              // e-, smaller one of capacity and converter_end()
     double quantisation_noise() const;             // e-

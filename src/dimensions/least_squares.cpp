@@ -35,7 +35,7 @@ std::optional<LeastSquares::Solution> LeastSquares::solve() const {
     const Eigen::VectorXd variances = inverse.diagonal();
     return Solution{{unknowns.begin(), unknowns.end()},
                     {variances.begin(), variances.end()},
-                    // storage order does not matter, as it is symmetric
+                    // The storage order of the inverse does not matter, as it is symmetric.
                     {inverse.data(), inverse.data() + inverse.size()}};
 }
 

@@ -22,7 +22,7 @@ struct TiffStack {
     double first = 0;    // um, height of the first image
     double step = 0;     // um, from one image to the next; 0: a single image
     std::string notes{}; // lines below ImageJ's in the first ImageDescription, ASCII
-    // for each image: label in ImageJ, and ImageDescription of all but the first; ASCII
+    // For each image its label in ImageJ, and the ImageDescription of all but the first; ASCII.
     std::vector<std::string> pages{};
 };
 

@@ -29,8 +29,8 @@ struct Roughness {
 struct RoughnessHeights {
     double sq = 0; // root mean square height, ISO 25178-2
     double sa = 0; // arithmetic mean height, ISO 25178-2
-    // arithmetic mean deviation from the line's own mean, averaged over all rows and columns: Ra (ISO 21920-2) over the
-    // whole length, without a filter
+    // Ra (ISO 21920-2) over the whole length, without a filter: the arithmetic mean deviation from a line's own mean,
+    // averaged over all rows and columns.
     double ra = 0;
 };
 RoughnessHeights roughness_heights(const Grid<double>& heights);

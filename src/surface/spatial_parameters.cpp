@@ -129,7 +129,7 @@ double texture_direction(const HeightMap& map, double mean) {
         return sum;
     });
     const auto greatest = std::max_element(power.begin(), power.end());
-    // direction of the waves, 0 to pi
+    // The direction of the waves, 0 to pi.
     const double angle = pi * static_cast<double>(greatest - power.begin()) / directions;
     return angle > 0 ? angle - pi / 2 : pi / 2;
 }

@@ -201,7 +201,7 @@ std::string sur_bytes(const HeightMap& map, const Provenance& provenance) {
     const int exponent = exponent_of_steps(map);
     std::vector<std::int32_t> points;
     points.reserve(map.height.values.size());
-    // placeholder until the lowest point is known
+    // A placeholder until the lowest point is known.
     constexpr std::int32_t gap = std::numeric_limits<std::int32_t>::max();
     std::int32_t lowest = 0, highest = 0;
     bool first = true, gaps = false;

@@ -163,7 +163,7 @@ void Section::record_reference(const Key& key, const std::string& value, const s
 }
 
 void Section::reject_keys_of_other_kinds(const std::string& kind) const {
-    // sorted by name, the order in which problems are reported
+    // The kinds of each key, sorted by its name, the order in which problems are reported.
     std::map<std::string, std::vector<std::string>> kinds_with;
     for (const Key* key : keys_->keys) {
         if (!key->kinds.empty()) {

@@ -16,7 +16,7 @@ struct SingleScatter {
     std::span<const physics::f64::Surface> illumination;
     std::span<const physics::f64::Surface> imaging;
     DiscSource source;
-    // above the plane of best focus; the illumination train ends and the imaging train begins there
+    // The height above the plane of best focus at which the illumination train ends and the imaging train begins.
     double front_vertex_height = 0;
     double greatest_defocus = 0;
     double detector_distance = 0; // behind the imaging train's last vertex

@@ -40,7 +40,7 @@ FoldedElements fold_illumination(const InstrumentDescription& description, const
                                  const Illumination& illumination) {
     FoldedElements folded = {.elements = {}, .source_pose = illumination.source_pose};
     add_part(folded.elements, illumination.illuminator, Part::illuminator);
-    // from the illuminator on, as each mirror folds all elements before it
+    // Mirrors are applied from the illuminator on, as each one folds all elements before it.
     for (const Fold& mirror : illumination.folds) {
         fold_back(folded.elements, 0, mirror.mirror.pose);
         folded.source_pose = folded.source_pose.mirrored_in(mirror.mirror.pose);

@@ -83,7 +83,7 @@ CardinalPoints cardinal_points(const Prescription& prescription, const Spectrum&
 // The edges that stop the rays just outside the rim, with their shares of the rim, the largest first.
 std::vector<Clipping> clipping(const Imaging& imaging, const Outline& outline, const Instrument& instrument,
                                std::size_t aperture_stop) {
-    // relative and in cosines: beyond the rim's bisection error, short of any other edge
+    // A relative step and one in cosines: beyond the rim's bisection error, short of any other edge.
     constexpr double outside = 1e-6;
     std::vector<Clipping> list;
     for (std::size_t azimuth = 0; azimuth < outline.radii.size(); ++azimuth) {

@@ -69,7 +69,7 @@ struct ImageQuality {
     double f_number = 0;       // 1 / (2 image_aperture)
     double airy_radius = 0;    // in the object: first zero, 0.6098 lambda / NA
     double detector_airy_radius = 0;
-    // n e / NA with the pixel pitch e in the object: depth over which defocus blurs by one pixel
+    // n e / NA with the pixel pitch e in the object: the depth over which defocus blurs by one pixel.
     double detector_depth_of_field = 0;
     glm::dvec2 field{0}; // sides of the detector's field in the object
     double field_diagonal = 0;

@@ -39,7 +39,7 @@ struct SourceDescription {
     double flux = 1;
     double radius = 0;                   // radius of the disc
     std::optional<glm::dvec2> rectangle; // width and height of a rectangle instead of the disc
-    // from disc or rectangle to the illumination's first vertex; none: the prescription's
+    // The distance from disc or rectangle to the illumination's first vertex; none: the prescription's.
     std::optional<double> distance;
     std::optional<RingLightDescription> ring; // ring light instead of disc, rectangle and illuminator
     std::optional<Spectrum> spectrum;         // none: the instrument's
@@ -72,7 +72,7 @@ struct FoldMirror {
 struct CoverGlass {
     double thickness = 0;
     Medium glass = Medium::air();
-    // height of the lower face above the paraxial object plane; none: half the free distance
+    // The height of the lower face above the paraxial object plane; none: half the free distance.
     std::optional<double> distance;
 };
 
@@ -80,10 +80,11 @@ struct CoverGlass {
 struct InstrumentDescription {
     SourceDescription source;
     std::vector<SourceDescription> further_sources; // ring lights
-    // spectrum of all light together, to which first-order data and best focus belong
+    // The spectrum of all light together, to which first-order data and best focus belong.
     Spectrum spectrum = Spectrum::line(0.5876);
     Prescription illumination;
-    // from the last illumination vertex to the objective's back vertex; none: the source is imaged into the pupil
+    // The distance from the last illumination vertex to the objective's back vertex; none: the source is imaged into
+    // the pupil.
     std::optional<double> illumination_to_objective;
     std::optional<double> field_stop_radius;            // none: the prescription's
     std::optional<LightField> light_field;              // transmission of the field stop's plane; none: 1 everywhere
@@ -107,7 +108,7 @@ struct InstrumentDescription {
     bool directed_emission = true;   // aim the source at directions that can pass the illumination train
     bool single_scatter = false;     // also compute the aim at the detector for light scattered once
     bool turned = false;             // also compute the form for the backward estimator
-    // largest distance of the specimen's top plane from the plane of best focus, for the gate
+    // The largest distance of the specimen's top plane from the plane of best focus, for the acceptance bound.
     double greatest_defocus = 0.2;
 
     std::vector<const SourceDescription*> sources() const; // all sources, the first one first
@@ -135,7 +136,7 @@ struct FirstOrder {
     double pupil_radius_in_source = 0;    // radius of source that fills the objective's pupil; 0: a ring light
     double illumination_to_objective = 0; // the distance given, or the one computed
     double source_magnification = 0;      // paraxial magnification of the source's image in the objective's pupil
-    // paraxial signed magnification of the field stop's image on the specimen; 0: no stop
+    // The paraxial signed magnification of the field stop's image on the specimen; 0: no stop.
     double field_stop_magnification = 0;
 };
 
@@ -160,7 +161,7 @@ struct TurnedInstrument {
     std::vector<physics::f64::Surface> surfaces;
     physics::f64::Instrument constants{};
     physics::f64::BackwardOptics optics{}; // its disc of pupil_radius contains all light
-    // slope of the pupil's edge, as pupil_radius; 0: no circle, or not the same all over the field
+    // The slope of the pupil's edge, like pupil_radius; 0: no circle, or not the same all over the field.
     double pupil_rim = 0;
 };
 
@@ -189,7 +190,7 @@ struct Instrument {
     std::vector<Element>
         elements; // in the order of the light: illuminator, splitter, cover glass, objective, ... detector
     std::vector<PlacedMesh> meshes; // in the elements' frame; only the non-sequential mode traces them
-    // pose in the elements' frame of the source's frame, which emits towards +z (a ring light's: of its aim)
+    // The pose, in the elements' frame, of the source's frame, which emits towards +z (for a ring light: of its aim).
     Pose source_pose;
     std::optional<TurnedInstrument> turned;       // none unless the description asks for it
     std::optional<glm::dvec2> single_scatter_aim; // aim_at_detector(); none unless the description asks for it

@@ -303,7 +303,7 @@ class Reader {
     }
 
     void take_unit(const Line& line) {
-        // length of each unit in mm
+        // The length of each unit in mm.
         const std::map<std::string, double> units = {{"MM", 1}, {"CM", 10}, {"IN", 25.4}, {"METER", 1000}};
         const auto found = line.words.empty() ? units.end() : units.find(line.words.front());
         if (found == units.end()) {

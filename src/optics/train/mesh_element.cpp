@@ -92,7 +92,7 @@ std::vector<Shell> shells_of(const Facets& facets) {
         Shell& shell = shells[number[root(facet)]];
         shell.facets.push_back(facet);
         const glm::uvec3& t = facets.triangles[facet];
-        // a near origin, because a far one would lose digits
+        // The origin is near, because a far one would lose digits.
         const glm::dvec3 middle = facets.vertices[facets.triangles[shell.facets.front()].x];
         const glm::dvec3 a = facets.vertices[t.x], b = facets.vertices[t.y], c = facets.vertices[t.z];
         shell.six_volumes += glm::dot(a - middle, glm::cross(b - middle, c - middle));

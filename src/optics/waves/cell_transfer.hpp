@@ -104,7 +104,7 @@ class CellTransfer {
 
     struct Nodes {
         std::mutex mutex;
-        // keyed by (dx, dy), for one wavelength; references stay valid
+        // Values by (dx, dy), for one wavelength; references to them stay valid.
         std::map<std::pair<int, int>, CellValues> values;
     };
 
