@@ -35,7 +35,7 @@ struct Spectrum {
     struct Part;
     static Spectrum mixture(const std::vector<Part>& parts);
 
-    bool operator==(const Spectrum& other) const; // compares all members
+    bool operator==(const Spectrum& other) const; // true for the same light
 };
 
 struct Spectrum::Part {
