@@ -15,7 +15,7 @@ using statistics::RandomStream;
 
 namespace {
 
-// 2019 SI: exact.
+// The constants are exact in the SI of 2019.
 constexpr double planck = 6.62607015e-34;    // J s
 constexpr double speed_of_light = 299792458; // m/s
 constexpr double metres_per_um = 1e-6;
@@ -100,7 +100,8 @@ ImageLight Camera::light_of(const Grid<double>& flux, const Grid<double>& standa
     ImageLight light;
     double camera_variance = 0, ray_variance = 0;
     for (const double power : flux.values) {
-        const double electrons = std::max(0.0, power * electrons_per_watt); // waves of few rays dip below zero
+        // Wave-filtered light of few rays may be below zero.
+        const double electrons = std::max(0.0, power * electrons_per_watt);
         light.mean += electrons / count;
         if (electrons > saturation_charge()) {
             light.saturated_share += 1 / count;

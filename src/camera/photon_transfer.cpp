@@ -10,14 +10,14 @@ namespace vkfv::camera {
 namespace {
 
 constexpr int bands = 16;
-// So short that dark current has no part in what is measured of light.
+// An exposure so short that dark current does not contribute to the measurements with light.
 constexpr double short_exposure = 1e-5;    // s
-constexpr double beyond_saturation = 1.15; // of the full well, where the series ends
+constexpr double beyond_saturation = 1.15; // end of the series, relative to the full well
 constexpr int peak_exposures = 25;
-constexpr double peak_reach = 1.5; // standard deviations of the charge about the largest variance
+constexpr double peak_reach = 1.5; // in standard deviations of the charge about the largest variance
 constexpr int dark_exposures = 6;
-constexpr double dark_share = 0.05; // of the full well, dark charge at the longest exposure
-constexpr double flat_share = 0.5;  // of saturation
+constexpr double dark_share = 0.05; // dark charge at the longest exposure, relative to the full well
+constexpr double flat_share = 0.5;  // charge of the flat stack, relative to the full well
 
 int band_of(int row, int rows) {
     return row * bands / rows;
@@ -38,7 +38,7 @@ std::vector<PairSums> sums_of_pair(const Grid<float>& a, const Grid<float>& b) {
     return sums;
 }
 
-// Mean and variance of each pixel over a stack, grown image by image.
+// Sums of each pixel over a stack, accumulated image by image, for its mean and variance.
 class GrowingStack {
   public:
     GrowingStack(int columns, int rows) : sum_(columns, rows), square_(columns, rows) {}
@@ -46,7 +46,7 @@ class GrowingStack {
     void add(const Grid<float>& image) {
         ++images_;
         for (std::size_t k = 0; k < image.values.size(); ++k) {
-            const double value = image.values[k]; // whole: sums of squares are exact
+            const double value = image.values[k]; // whole number, so that sums of squares are exact
             sum_.values[k] += value;
             square_.values[k] += value * value;
         }
@@ -71,7 +71,7 @@ class GrowingStack {
     double images_ = 0;
 };
 
-// Takes the images one after the other; each has its own random numbers.
+// Takes the images in sequence; each has its own random numbers.
 class Laboratory {
   public:
     Laboratory(const Camera& camera, const PhotonTransferOptions& options, const ImageTaker& take)
@@ -108,7 +108,7 @@ class Laboratory {
     std::uint32_t next_image_ = 0;
 };
 
-// The level of largest variance where that is averaged with its neighbours', which are half as heavy.
+// The photons at the level of largest variance, smoothed with half weights on its two neighbours.
 double photons_of_largest_variance(const std::vector<PairLevel>& series) {
     double largest = 0, photons = 0;
     for (std::size_t k = 1; k + 1 < series.size(); ++k) {
@@ -145,7 +145,8 @@ PhotonTransferData measure_photon_transfer(const Camera& measured, const PhotonT
         }
         return levels;
     };
-    // A cubic is no peak, and errs alike where the peak is in the middle: what it finds is looked at again.
+    // A cubic only approximates the peak, with the same error wherever the peak is in the middle of the levels; so the
+    // peak found is measured again.
     const auto wide = about(coarse_peak, std::max(fine_step, 2 * step / (peak_exposures - 1)), "search");
     const auto middle = about(photons_of_largest_variance(wide), fine_step, "middle");
     data.peak = about(photons_of_peak(middle), fine_step, "peak");

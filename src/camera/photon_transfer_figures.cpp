@@ -11,11 +11,11 @@ namespace vkfv::camera {
 namespace {
 
 constexpr double quantisation_variance = 1.0 / 12; // DN^2
-// Below this variance in the dark the noise of quantisation is not that of evenly spread values.
+// Below this variance in the dark, quantisation noise is not that of uniformly distributed values.
 constexpr double least_dark_variance = 0.24;            // DN^2
 constexpr double bound_of_dark_noise = 0.40;            // DN
 constexpr double dark_deviation_of_quantisation = 0.49; // DN
-constexpr double linear_share = 0.7;                    // of saturation, to which gain and responsivity are fitted
+constexpr double linear_share = 0.7; // end of the fits of gain and responsivity, relative to saturation
 constexpr double linearity_from = 0.05, linearity_to = 0.95;
 constexpr double decibels = 20;
 
@@ -36,7 +36,7 @@ struct Point {
     double x = 0, y = 0, weight = 1;
 };
 
-// y = slope x.
+// The slope of the weighted fit y = slope x.
 double slope_through_origin(const std::vector<Point>& points) {
     double product = 0, square = 0;
     for (const auto& [x, y, weight] : points) {
@@ -67,7 +67,7 @@ Line line_through(const std::vector<Point>& points) {
     return {.offset = y_mean - product / square * x_mean, .slope = product / square};
 }
 
-// Coefficients of the cubic by least squares: normal equations by elimination, on x within -1 ... 1.
+// The coefficients of the least-squares cubic, by elimination in the normal equations, for x within -1 ... 1.
 std::array<double, 4> cubic_through(const std::vector<Point>& points) {
     std::array<std::array<double, 5>, 4> equations{};
     for (const auto& [x, y, weight] : points) {
@@ -79,7 +79,7 @@ std::array<double, 4> cubic_through(const std::vector<Point>& points) {
             equations[row][4] += weight * powers[row] * y;
         }
     }
-    for (std::size_t pivot = 0; pivot < 4; ++pivot) { // positive definite: no exchange of rows is needed
+    for (std::size_t pivot = 0; pivot < 4; ++pivot) { // positive definite, so no pivoting is needed
         for (std::size_t row = 0; row < 4; ++row) {
             if (row == pivot) {
                 continue;
@@ -99,7 +99,7 @@ std::array<double, 4> cubic_through(const std::vector<Point>& points) {
 
 struct Nonuniformity {
     double mean = 0;     // DN
-    double variance = 0; // DN^2, of the pixels, without what is left of temporal noise
+    double variance = 0; // DN^2, of the pixels, without the remaining temporal noise
 };
 
 Nonuniformity nonuniformity_of(const std::vector<StackSums>& stack, int averaged, int left_out) {
@@ -138,7 +138,7 @@ double root_of(double variance) {
     return std::sqrt(std::max(0.0, variance));
 }
 
-// The values alone.
+// The figures' values, without standard errors.
 PhotonTransferFigures figures_without(const PhotonTransferData& data, int left_out) {
     const PairLevel& dark = data.series.front();
     const double dark_mean = mean_value(dark, left_out), dark_variance = temporal_variance(dark, left_out);
@@ -147,7 +147,8 @@ PhotonTransferFigures figures_without(const PhotonTransferData& data, int left_o
     for (const auto& level : data.series) {
         if (level.photons > 0 && level.photons <= linear_share * saturation) {
             const double value = mean_value(level, left_out) - dark_mean, variance = temporal_variance(level, left_out);
-            // The variance's standard error goes with it, the mean's with its root.
+            // The standard error of a variance is proportional to it, that of a mean to the variance's root; weights
+            // are inverse squares.
             transfer.push_back({value, variance - dark_variance, 1 / (variance * variance)});
             response.push_back({level.photons, value, 1 / variance});
         }
@@ -194,13 +195,14 @@ double photons_of_peak(const std::vector<PairLevel>& levels, int left_out) {
         points.push_back({(level.photons - middle) / reach, temporal_variance(level, left_out)});
     }
     const auto c = cubic_through(points);
-    // Of the slope's two zeros, the one where the curvature is negative.
+    // The maximum is the one of the slope's two zeros with a negative curvature.
     const double root = std::sqrt(std::max(0.0, c[2] * c[2] - 3 * c[1] * c[3]));
     const double place = -c[1] / (c[2] - root);
     return middle + reach * std::clamp(place, -1.0, 1.0);
 }
 
-// Standard errors by the jackknife: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans" (1982), ch. 3.
+// Standard errors follow by the jackknife: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans" (1982),
+// ch. 3.
 PhotonTransferFigures photon_transfer_figures(const PhotonTransferData& data) {
     PhotonTransferFigures figures = figures_without(data, -1);
     const auto count = static_cast<int>(data.dark_stack.size());

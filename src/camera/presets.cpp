@@ -4,10 +4,10 @@ namespace vkfv::camera {
 
 namespace {
 
-// Given to the project as published; the reports cannot be named (EMVA 1288 figures of a camera with Sony's IMX250, 525
-// nm): quantum efficiency 63.40 %, temporal dark noise 2.44 e-, saturation capacity 10970 e-, largest signal to noise
-// ratio 40.40 dB, dynamic range 71.45 dB. Derived: 10^(40.40 / 10) = 10965 e- agrees with the capacity. 10970 e- /
-// 10^(71.45 / 20) less half an electron leaves 2.436 e- for all noise in the dark: the quantisation has no part in it,
+// EMVA 1288 figures of a camera with Sony's IMX250 at 525 nm, given to the project as published (the reports cannot be
+// named): quantum efficiency 63.40 %, temporal dark noise 2.44 e-, saturation capacity 10970 e-, largest signal to
+// noise ratio 40.40 dB, dynamic range 71.45 dB. Derived: 10^(40.40 / 10) = 10965 e- agrees with the capacity. 10970 e-
+// / 10^(71.45 / 20) less half an electron leaves 2.436 e- for all noise in the dark: quantisation does not contribute,
 // so that grey values of 16 bits are meant, and the gain lets the charge clip at 0.97 of their range. Not published
 // there, and assumed: DSNU, PRNU, offset; no dark current.
 CameraOptions imx250() {
@@ -23,10 +23,10 @@ CameraOptions imx250() {
     return camera;
 }
 
-// Given to the project as published; the reports cannot be named (EMVA 1288 figures of a camera with Sony's IMX900, 536
-// nm): quantum efficiency 91.25 %, temporal dark noise 5.560 e-, saturation capacity 9458 e-, gain 0.399 DN/e-,
-// DSNU 3.7 e-, PRNU 0.7 %. Derived: largest signal to noise ratio sqrt(9458) = 39.76 dB, dynamic range 63.80 dB; 9458
-// e- are 3774 DN, so that grey values have 12 bits. Not published there, and assumed: offset; no dark current.
+// EMVA 1288 figures of a camera with Sony's IMX900 at 536 nm, given to the project as published (the reports cannot be
+// named): quantum efficiency 91.25 %, temporal dark noise 5.560 e-, saturation capacity 9458 e-, gain 0.399 DN/e-,
+// DSNU 3.7 e-, PRNU 0.7 %. Derived: largest signal to noise ratio sqrt(9458) = 39.76 dB, dynamic range 63.80 dB;
+// 9458 e- are 3774 DN, so that grey values have 12 bits. Not published there, and assumed: offset; no dark current.
 CameraOptions imx900() {
     CameraOptions camera;
     camera.quantum_efficiency.values = {0.9125};

@@ -8,10 +8,10 @@
 
 namespace vkfv::camera {
 
-// What is published of each, and what is not, stands beside the values.
+// The presets; published and assumed values are listed beside them.
 enum class Preset { none, imx250, imx900 };
 
-// All but exposure, frames and seed; none of Preset::none.
+// The options of a preset except exposure, frames and seed; none for Preset::none.
 std::optional<CameraOptions> preset_camera(Preset preset);
 
 } // namespace vkfv::camera

@@ -8,13 +8,13 @@ namespace vkfv::camera {
 
 namespace {
 
-// P(N < n): the probabilities below n, which fall on the side that the sum ends on.
+// The probability P(N < n) of a Poisson variable, summed over the smaller of the two tails.
 double probability_below(double n, double mean) {
     constexpr double negligible = 1e-18;
     if (n <= 0) {
         return 0;
     }
-    if (n - 1 > mean) { // the few above, summed upwards
+    if (n - 1 > mean) { // sums the small upper tail
         double term = std::exp(statistics::log_poisson_probability(n, mean)), above = 0;
         for (double k = n; term > negligible * above && term > 0; k += 1, term *= mean / k) {
             above += term;
@@ -32,7 +32,7 @@ double slope_over_responses(double capacity, double photo_response, double clip)
     if (photo_response <= 0) {
         return variance_slope(capacity, clip);
     }
-    constexpr double reach = 4; // standard deviations
+    constexpr double reach = 4; // in standard deviations
     constexpr int nodes_a_side = 16;
     double slope = 0;
     for (int node = -nodes_a_side; node <= nodes_a_side; ++node) {

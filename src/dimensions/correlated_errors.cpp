@@ -14,11 +14,11 @@ namespace {
 struct Correlations {
     std::vector<double> along_x, along_y; // at distances of 0, 1, ... points
 
-    // The number of points that carry one independent value.
+    // The number of points that together carry the information of one independent value.
     double points() const { return correlated_length(along_x) * correlated_length(along_y); }
 };
 
-// F'RF, n x n.
+// The matrix F'RF, n x n, of fit_covariance().
 std::vector<double> correlated_products(const Grid<double>& residues, std::size_t n, const FitFunctions& functions,
                                         const Correlations& correlations) {
     std::vector<double> products(n * n), values(n);
@@ -105,7 +105,8 @@ FitCovariance fit_covariance(const Grid<double>& residues, const LeastSquares::S
     Correlations correlations{.along_x = correlation_along_x(residues), .along_y = correlation_along_y(residues)};
     std::vector<double> spread =
         product(solution.inverse, correlated_products(residues, n, functions, correlations), n);
-    // Each mean of lagged products lacks what the fit has taken, which is the same at all distances.
+    // Each mean of lagged products lacks the share that the fit has removed from the residues, which is the same at all
+    // distances.
     const double taken_share = (trace(spread, n) + taken) / points;
     const double lags =
         static_cast<double>((2 * correlations.along_x.size() - 1) * (2 * correlations.along_y.size() - 1));

@@ -36,7 +36,7 @@ Dimensions of_levels(const std::string& name, const char* rule, double nominal,
     if (levels) {
         take(by_profiles, levels->profiles);
         areal.value = levels->areal;
-        areal.standard_error = levels->profiles.standard_error; // the same points
+        areal.standard_error = levels->profiles.standard_error; // both use the same points
     }
     return {by_profiles, areal};
 }
@@ -65,7 +65,7 @@ Dimensions of(const HeightMap& map, const Prism& prism) {
     if (const auto angles = flank_angles(map, prism)) {
         take(before, angles->before);
         take(behind, angles->behind);
-        between.value = pi - before.value - behind.value; // a tilt of the map cancels
+        between.value = pi - before.value - behind.value; // independent of a tilt of the map
         between.standard_error = std::hypot(before.standard_error, behind.standard_error);
     }
     return {before, behind, between};
@@ -85,7 +85,7 @@ void take_amplitude(Dimension& dimension, const Wave& wave) {
     dimension.standard_error = wave.amplitude_error;
 }
 
-// Across u, turned by `angle` from there on.
+// The frequency (cycles per mm along x and y) of a wave along u, rotated by `angle` (rad).
 std::array<double, 2> frequency_across(const Frame& frame, double period, double angle = 0) {
     return {std::cos(frame.angle + angle) / period, std::sin(frame.angle + angle) / period};
 }
@@ -97,7 +97,7 @@ Dimensions of(const HeightMap& map, const Grating& grating) {
     if (found) {
         const Wave& wave = found->waves.front();
         take_period(pitch, wave);
-        // Lines and ground of the lines that are there.
+        // The levels are evaluated on the lines that the map shows, not on the nominal ones.
         Grating shown = grating;
         shown.period = wave.period();
         shown.line_width *= shown.period / grating.period;
@@ -116,7 +116,7 @@ Dimensions of(const HeightMap& map, const Grating& grating) {
     return result;
 }
 
-// Turned by less than half a turn.
+// The angle between two waves, 0 to pi.
 double angle_between(const Wave& first, const Wave& second) {
     const auto &a = first.frequency, &b = second.frequency;
     return std::atan2(std::abs(a[0] * b[1] - a[1] * b[0]), a[0] * b[0] + a[1] * b[1]);
@@ -197,7 +197,7 @@ Dimensions of(const HeightMap& map, const SphereCap& cap) {
     Dimension radius{.name = "radius", .rule = fit_rule, .nominal = cap.radius};
     Dimension sz{.name = "form deviation Sz", .rule = fit_rule, .nominal = 0};
     Dimension sq{.name = "form deviation Sq", .rule = fit_rule, .nominal = 0};
-    // Without a radius all of the map is the sphere's.
+    // Without a radius the whole map lies on the sphere.
     if (const auto form = cap.radius > 0 ? sphere_form(map, cap) : sphere_form(map)) {
         radius.value = form->sphere.radius;
         radius.standard_error = form->radius_error;

@@ -1,4 +1,4 @@
-// What is measured on standards: their nominal geometry, and where it lies on them.
+// The features measured on standards: their nominal geometry and position.
 #pragma once
 
 #include "surface/height_map.hpp"
@@ -9,7 +9,7 @@
 
 namespace vkfv::dimensions {
 
-// A feature's own axes: u across it, v along it, from its middle. mm; the angle from x to u in rad.
+// A feature's coordinates: u across it, v along it, from its middle. mm; the angle from x to u in rad.
 struct Frame {
     double x = 0;
     double y = 0;
@@ -20,18 +20,18 @@ struct Frame {
     bool operator==(const Frame&) const = default;
 };
 
-// Lengths in mm, angles in rad. The names of types are those of ISO 25178-70.
+// In the features below lengths are in mm, angles in rad. The names of types are those of ISO 25178-70.
 
-// One edge between two levels.
+// A single edge between two levels.
 struct Step {
-    Frame frame;       // its origin on the edge
-    double height = 0; // of the level at u > 0 over that at u < 0
+    Frame frame;       // origin on the edge
+    double height = 0; // height of the level at u > 0 above that at u < 0
 };
 
-// Type PGR (A1 of ISO 5436-1), along v.
+// Type PGR (A1 of ISO 5436-1): a groove along v.
 struct Groove {
     Frame frame;
-    double width = 0; // at half depth
+    double width = 0; // width at half depth
     double depth = 0; // negative: a ridge
 };
 
@@ -39,37 +39,37 @@ struct Groove {
 struct Prism {
     Frame frame;
     double height = 0;
-    double flank_angle = 0; // of either flank against the plane
-    double top_width = 0;   // of the level between the flanks
+    double flank_angle = 0; // angle of either flank to the plane
+    double top_width = 0;   // width of the level between the flanks
 };
 
-// Lines along v. Their middles lie at u = k * period.
+// Lines along v, centred on u = k * period.
 struct Grating {
     Frame frame;
     double period = 0;
-    double depth = 0;      // of the ground below the lines
-    double line_width = 0; // of the upper level; 0: there are no levels (a triangular shape)
+    double depth = 0;      // depth of the ground below the lines
+    double line_width = 0; // width of the upper level; 0: no levels (a triangular profile)
 };
 
 // Type ACG: squares or grooves in two directions.
 struct CrossGrating {
     Frame frame;        // u across the first set of lines
-    double pitch_u = 0; // of the lines that the first wave vector is across
+    double pitch_u = 0; // pitch along the first wave vector
     double pitch_v = 0;
-    double angle = 0; // between the two wave vectors
+    double angle = 0; // angle between the two wave vectors
 };
 
-// Type PPS, along u.
+// Type PPS: a sinusoid along u.
 struct Sinusoid {
     Frame frame;
     double amplitude = 0;
     double period = 0;
 };
 
-// Type ACS: the sum of two sinusoids across each other.
+// Type ACS: the sum of two sinusoids at right angles.
 struct CrossSinusoid {
     Frame frame;
-    double amplitude = 0; // of either
+    double amplitude = 0; // amplitude of each sinusoid
     double period_u = 0;
     double period_v = 0;
 };
@@ -81,12 +81,12 @@ struct RadialSinusoid {
     double period = 0;
 };
 
-// Sinusoid along u whose frequency changes linearly from u = start on, where its phase is 0 and rises.
+// A sinusoid along u whose frequency changes linearly from u = start, where its phase is 0 and it rises.
 struct Chirp {
     Frame frame;
     double amplitude = 0;
-    double start = 0;  // u
-    double length = 0; // along u
+    double start = 0;  // u of the beginning
+    double length = 0; // length along u
     double period_start = 0;
     double period_stop = 0;
 };
@@ -102,16 +102,16 @@ struct Star {
 // Type ASP: the cap of a sphere on a plane, or a dimple in it.
 struct SphereCap {
     Frame frame;
-    double radius = 0; // 0: not known, and all of the map is on it
-    double height = 0; // of the cap over the plane; negative: a dimple
+    double radius = 0; // 0: unknown, with the whole map on the sphere
+    double height = 0; // height of the cap above the plane; negative: a dimple
 };
 
-// Type AFL.
+// Type AFL: a flat.
 struct Flat {};
 
-// Plateaus of any outline over a level ground.
+// Plateaus of any outline on a level ground.
 struct Plateaus {
-    surface::HeightMap nominal; // the ground at 0
+    surface::HeightMap nominal; // nominal heights, the ground at 0
 };
 
 using Feature = std::variant<Step, Groove, Prism, Grating, CrossGrating, Sinusoid, CrossSinusoid, RadialSinusoid, Chirp,

@@ -13,12 +13,12 @@ namespace {
 
 using surface::HeightMap;
 
-// Levels between one edge (and the end), or two, in the mean heights over u of one direction.
+// A step at one edge, or a strip between two edges, found in the mean heights along u in one direction.
 struct Edges {
-    Frame frame;                  // its origin at the map's middle
-    double first = 0, second = 0; // u
-    double gain = 0;              // by how much they lower the sum of squares
-    double height = 0;            // of what lies between them over the rest
+    Frame frame;                  // origin at the map's middle
+    double first = 0, second = 0; // u of the edges
+    double gain = 0;              // reduction of the sum of squares by the edges
+    double height = 0;            // height between the edges above the rest
 };
 
 class MeanProfile {
@@ -39,14 +39,14 @@ class MeanProfile {
         level_out();
     }
 
-    // With one edge only the second one is the end.
+    // The edges of largest gain. With one edge, the second is the end of the profile.
     Edges best(bool two) const {
         const std::size_t bins = count_.size(), margin = bins / 20;
         Edges best{.frame = frame_};
         for (std::size_t from = margin; from + margin < bins; ++from)
             for (std::size_t to = two ? from + margin : bins; two ? to + margin < bins : to == bins; ++to) {
                 const double inside = counts_[to] - counts_[from], moment = moments_[to] - moments_[from];
-                // Of delta, 1 inside and 0 outside, what mean and slope leave.
+                // The sum of squares of delta (1 inside, 0 outside) after mean and slope are removed.
                 const double rest = inside - inside * inside / counts_[bins] - moment * moment / square_;
                 const double product = products_[to] - products_[from];
                 if (const double gain = product * product / rest; rest > 1e-6 * counts_[bins] && gain > best.gain)
@@ -57,8 +57,8 @@ class MeanProfile {
     }
 
   private:
-    // Sums up to each bin of the count, its first moment about the middle of all, and of what a line leaves of the
-    // sums.
+    // Computes cumulative sums over the bins: of the count, of its first moment about the centre, and of the heights
+    // after a line is removed.
     void level_out() {
         double total = 0, first = 0, sum = 0;
         for (std::size_t k = 0; k < count_.size(); ++k) {
@@ -101,7 +101,7 @@ Edges found_edges(const HeightMap& map, bool two) {
     };
     search(-90, 85, 5, 100);
     const double near = best.frame.angle / radians_per_degree;
-    best.gain = 0; // finer bins
+    best.gain = 0; // the finer bins start anew
     search(near - 5, near + 5, 0.5, 300);
     return best;
 }
@@ -123,7 +123,7 @@ double frequency_size(const std::array<double, 2>& frequency) {
     return std::hypot(frequency[0], frequency[1]);
 }
 
-// Lines are as wide as the share of points above the middle level says.
+// The width of the lines, from the share of points above the middle level.
 double line_width_of(const HeightMap& map, double period) {
     const auto heights = sorted_heights(surface::remove_plane(map, surface::least_squares_plane(map)));
     const auto at = [&](double share) {
@@ -189,7 +189,7 @@ std::vector<Dimension> evaluate_found(const HeightMap& map, Sought sought) {
     if (sought == Sought::sphere) {
         if (const auto sphere = found_sphere(map))
             dimensions = evaluate(map, *sphere);
-        // The heights settle no radius, whatever the fit says.
+        // The heights do not determine so small a radius, even if the fit succeeds.
         if (!dimensions.empty() &&
             !(dimensions.front().value >= least_radius_in_errors * dimensions.front().standard_error))
             dimensions.clear();

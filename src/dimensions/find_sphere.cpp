@@ -12,7 +12,7 @@ namespace {
 
 using surface::HeightMap;
 
-// Shares of the rim's radius: what lies between them may be rounded, and belongs to neither.
+// Limits of sphere and plane in units of the rim's radius: the zone between them may be rounded and is left out.
 constexpr double inside_rim = 0.9, outside_rim = 1.05;
 
 template <class Visit>
@@ -26,7 +26,8 @@ void for_measured(const HeightMap& map, const Visit& visit) {
     }
 }
 
-// Means of square blocks, at most so many along the longer side; of blocks of which at least a quarter was measured.
+// Means over square blocks, at most `most` along the longer side; NaN for blocks of which less than a quarter was
+// measured.
 HeightMap block_means(const HeightMap& map, int most) {
     const int block = (std::max(map.columns(), map.rows()) + most - 1) / most;
     if (block <= 1) {
@@ -65,7 +66,7 @@ struct Rim {
     double share(double px, double py) const { return std::hypot(px - x, py - y) / radius; }
 };
 
-// A paraboloid upon a circle, fitted beside a plane; gain() is by how much it lowers the sum of squares of the heights.
+// A paraboloid over a circle, fitted together with a plane; gain() is its reduction of the heights' sum of squares.
 class Bump {
   public:
     explicit Bump(const HeightMap& map) : level_(surface::remove_plane(map, surface::least_squares_plane(map))) {
@@ -86,7 +87,7 @@ class Bump {
         for_measured(level_, [&](double x, double y, double) { yy_ += std::pow(y - y_ - lean_ * (x - x_), 2); });
     }
 
-    // A plane can be told from a bump upon it.
+    // True if the points can distinguish a plane from a bump on it.
     bool settled() const { return count_ >= 12 && xx_ > 0 && yy_ > 0; }
 
     double rest(const Rim& rim) const {
@@ -144,7 +145,7 @@ class Bump {
         return best;
     }
 
-    // Steps along each unknown, halved where none gains.
+    // Maximizes the gain by steps along each unknown, halved when none increases it.
     Rim refined(Rim rim) const {
         if (!(rim.radius > 0)) {
             return rim;
@@ -197,7 +198,7 @@ double orthogonal_distance(const surface::Sphere& sphere, double x, double y, do
     return std::hypot(x - sphere.x_centre, y - sphere.y_centre, z - centre) - sphere.radius;
 }
 
-// How far a sphere rises over a circle of this radius about its pole.
+// The sag of a sphere over a circle of this radius about its pole (mm).
 double sag_over(const surface::Sphere& sphere, double radius) {
     return sphere.radius - std::sqrt(std::max(0.0, sphere.radius * sphere.radius - radius * radius));
 }
@@ -206,15 +207,16 @@ struct CapOnPlane {
     surface::Sphere sphere;
     surface::Plane plane;
     Rim rim;
-    double height = 0; // of the pole over the plane, mm; negative: a dimple
+    double height = 0; // mm, height of the pole above the plane; negative: a dimple
 };
 
-// The circle where sphere and plane meet; of more than half a sphere the equator, which hides it.
+// The circle in which sphere and plane meet; if more than half of the sphere is above the plane, the equator, which
+// hides that circle.
 std::optional<CapOnPlane> meeting(const surface::Sphere& sphere, const surface::Plane& plane) {
     const double side = sphere.convex ? 1 : -1;
     const double centre = sphere.apex - side * sphere.radius;
     const double steepness = std::hypot(1, plane.slope_x, plane.slope_y);
-    // The distance of the centre from the plane, positive above it.
+    // The signed distance of the centre from the plane, positive above it.
     const double over = (centre - plane.height(sphere.x_centre, sphere.y_centre)) / steepness;
     const double distance = std::min(0.0, side * over);
     if (!(sphere.radius + distance > 0)) {
@@ -229,8 +231,8 @@ std::optional<CapOnPlane> meeting(const surface::Sphere& sphere, const surface::
                       .height = side * (sphere.radius + distance)};
 }
 
-// Fits sphere and plane in turn until the rim stays. There is none where too little lies beyond the rim, or the rim
-// does not settle.
+// Fits sphere and plane in turn until the rim is stable. None if too little of the map lies beyond the rim, or if the
+// rim does not converge.
 std::optional<CapOnPlane> settled_cap(const HeightMap& map, Rim rim) {
     constexpr double least_ground = 0.002, least_points = 10;
     constexpr int most_rounds = 50;
@@ -257,7 +259,7 @@ std::optional<CapOnPlane> settled_cap(const HeightMap& map, Rim rim) {
     return std::nullopt;
 }
 
-// Sums of squares that two models leave of the same points.
+// The residual sums of squares of two models over the same points.
 struct Rests {
     double points = 0, cap = 0, whole = 0;
 };
@@ -290,9 +292,9 @@ double rest_of(const HeightMap& map, const surface::Sphere& sphere) {
 
 std::optional<SphereCap> found_sphere(const HeightMap& map) {
     constexpr int search_blocks = 64, settling_blocks = 128, judging_blocks = 32;
-    constexpr double most_rest = 0.1;    // of the sag
-    constexpr double like_the_cap = 1.1; // sums of squares: a plane beside the cap must lower them by more
-    constexpr double rounding = 1e-9;    // of the radius
+    constexpr double most_rest = 0.1;    // relative to the sag
+    constexpr double like_the_cap = 1.1; // least ratio of sums of squares for which a plane beside the cap is accepted
+    constexpr double rounding = 1e-9;    // relative to the radius
     const HeightMap coarse = block_means(map, search_blocks), fine = block_means(map, settling_blocks),
                     judged = block_means(map, judging_blocks);
     const Bump bump(coarse);
@@ -315,8 +317,8 @@ std::optional<SphereCap> found_sphere(const HeightMap& map) {
                 .frame = {.x = cap->rim.x, .y = cap->rim.y}, .radius = cap->sphere.radius, .height = cap->height};
         }
     }
-    // A bump that leaves much less than the sphere says that this is none, although what lies beside it is too little
-    // to settle a plane.
+    // If a bump leaves much less residual than the sphere, the map is no sphere, even if the part beside the bump is
+    // too small to determine a plane.
     if (const double whole_rest = rest_of(coarse, whole);
         start.radius > 0 &&
         !(whole_rest * whole_rest * measured_points(coarse) <=

@@ -1,4 +1,4 @@
-// A sphere whose position is not given: a cap upon a plane, a dimple in it, or a map that lies on a sphere altogether.
+// Finds a sphere of unknown position: a cap on a plane, a dimple in it, or a map that lies on a sphere altogether.
 #pragma once
 
 #include "dimensions/feature.hpp"
@@ -7,13 +7,13 @@
 
 namespace vkfv::dimensions {
 
-// The cap and the tilted plane which together leave the least squares of the heights. A paraboloid upon a circle is
-// fitted at all places and sizes first, so that no threshold of height decides what belongs to the cap. Then sphere and
-// plane are fitted in turn, the sphere inside nine tenths of the rim and the plane beyond 1.05 of it, and the rim is
-// where they meet, until it stays. The frame's origin is the rim's middle. A radius of 0 says that one sphere through
-// all points leaves as little. None where the rim does not settle, where the heights, averaged over a
-// thirty-second of the map against noise, are off the sphere by more than a tenth of its sag (root mean square), or
-// where nothing was measured.
+// Finds the cap and the tilted plane which together give the least squares of the heights. A paraboloid over a circle
+// is first fitted at all places and sizes, so that no height threshold decides which points belong to the cap. Then
+// sphere and plane are fitted in turn, the sphere within nine tenths of the rim and the plane beyond 1.05 of it, with
+// the rim where they meet, until the rim is stable. The frame's origin is the rim's centre. A radius of 0 means that
+// one sphere through all points leaves as little residual. None if the rim does not converge, if the root mean square
+// deviation from the sphere of heights averaged over a thirty-second of the map (to reduce noise) exceeds a tenth of
+// the sag, or if nothing was measured.
 std::optional<SphereCap> found_sphere(const surface::HeightMap& map);
 
 } // namespace vkfv::dimensions

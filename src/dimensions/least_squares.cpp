@@ -22,7 +22,7 @@ std::optional<LeastSquares::Solution> LeastSquares::solve() const {
             matrix(row, column) = matrix(column, row) =
                 matrix_[static_cast<std::size_t>(row) * n_ + static_cast<std::size_t>(column)];
     }
-    // Unknowns of unlike magnitude are brought to one.
+    // Unknowns of different magnitude are scaled to one.
     const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
     if (!scale.allFinite())
         return std::nullopt;
@@ -35,7 +35,8 @@ std::optional<LeastSquares::Solution> LeastSquares::solve() const {
     const Eigen::VectorXd variances = inverse.diagonal();
     return Solution{{unknowns.begin(), unknowns.end()},
                     {variances.begin(), variances.end()},
-                    {inverse.data(), inverse.data() + inverse.size()}}; // symmetric
+                    // The storage order of the inverse does not matter, as it is symmetric.
+                    {inverse.data(), inverse.data() + inverse.size()}};
 }
 
 } // namespace vkfv::dimensions

@@ -11,9 +11,9 @@ namespace {
 
 using surface::HeightMap;
 
-constexpr double least_share = 0.5; // of a region's points
+constexpr double least_share = 0.5; // share of a region's points
 
-// From one u to another, of the upper (+1) or the lower level (-1).
+// A range of u on the upper (+1) or the lower level (-1).
 struct Region {
     double from, to;
     double side;
@@ -23,7 +23,7 @@ bool has(const Region& region, const ProfilePoint& point) {
     return point.u >= region.from && point.u <= region.to;
 }
 
-// The regions of which a profile has enough points.
+// The regions in which a profile has enough points.
 std::vector<Region> covered(const std::vector<Region>& regions, const std::vector<ProfilePoint>& line, double spacing) {
     std::vector<Region> result;
     std::ranges::copy_if(regions, std::back_inserter(result), [&](const Region& region) {
@@ -33,7 +33,8 @@ std::vector<Region> covered(const std::vector<Region>& regions, const std::vecto
     return result;
 }
 
-// A profile needs all regions, or with `any` some of both sides, and three for its slope.
+// True if a profile has all regions or, with `any`, at least three, which determine its slope, with both levels among
+// them.
 bool enough(const std::vector<Region>& found, std::size_t asked, bool any) {
     const auto upper = std::ranges::count_if(found, [](const Region& region) { return region.side > 0; });
     return any ? found.size() >= 3 && upper > 0 && upper < std::ssize(found) : found.size() == asked;
@@ -64,12 +65,12 @@ std::optional<LevelDifference> fitted_levels(const HeightMap& map, const Frame& 
         }
     }
     LevelDifference result{.profiles = mean_of(differences)};
-    // A fifth of the profiles at least, so that no corner stands for the field; across a field's diagonal a third is
-    // long.
+    // At least a fifth of the profiles must count, so that no corner represents the field; across a field's diagonal a
+    // third are long.
     if (5 * result.profiles.count < std::ssize(profiles.lines))
         return std::nullopt;
     const auto whole = areal.solve();
-    const auto solution = whole ? whole : along.solve(); // one profile alone has no slope along v
+    const auto solution = whole ? whole : along.solve(); // a single profile determines no slope along v
     if (!solution)
         return std::nullopt;
     result.middle = solution->unknowns[0];
@@ -80,7 +81,7 @@ std::optional<LevelDifference> fitted_levels(const HeightMap& map, const Frame& 
     return result;
 }
 
-// Whether the map reaches over half of the outer regions.
+// True if the map covers at least half of the outer regions.
 bool reaches(const HeightMap& map, const Frame& frame, double from, double to) {
     const Reach reach = reach_along(map, frame);
     return std::min(reach.before, reach.behind) >= from + least_share * (to - from);
@@ -93,8 +94,8 @@ double middle_of(const std::vector<double>& crossings) {
     return crossings.empty() ? surface::undefined : sum / static_cast<double>(crossings.size());
 }
 
-// Each profile's width at the level halfway, that of all or, if `own`, the profile's; NaN where it does not cross it
-// near both edges.
+// The width of each profile at the level halfway: at the common one or, if `own`, at the profile's. NaN if the profile
+// does not cross it near both edges.
 std::vector<double> widths_at(const Profiles& profiles, const Groove& groove, const LevelDifference& depth, bool own) {
     std::vector<double> widths;
     for (std::size_t line = 0; line < profiles.lines.size(); ++line) {
@@ -123,7 +124,7 @@ std::optional<LevelDifference> groove_depth(const HeightMap& map, const Groove& 
     const double width = groove.width, side = groove.depth < 0 ? -1 : 1;
     if (!reaches(map, groove.frame, width / 2 + width / 3, width / 2 + width))
         return std::nullopt;
-    // Outer regions end with the map.
+    // The outer regions are cut at the map's border.
     const Reach reach = reach_along(map, groove.frame);
     const double inner = width / 2 + width / 3, outer = width / 2 + width;
     return fitted_levels(map, groove.frame,

@@ -11,9 +11,9 @@ namespace {
 
 using surface::HeightMap;
 
-// Squared distance, in points, to the nearest that is not `of` its set: the lower envelope of parabolas (P.
-// Felzenszwalb, D. Huttenlocher, "Distance transforms of sampled functions", Theory of Computing 8 (2012)), along one
-// line.
+// Extends squared distances along one line: each value becomes the minimum, over the line, of a value plus the squared
+// distance to it, by the lower envelope of parabolas (P. Felzenszwalb, D. Huttenlocher, "Distance transforms of sampled
+// functions", Theory of Computing 8 (2012)). pitch: mm.
 void transform_line(std::vector<double>& values, double pitch) {
     const auto n = static_cast<int>(values.size());
     std::vector<int> parabola(values.size());
@@ -45,7 +45,7 @@ void transform_line(std::vector<double>& values, double pitch) {
     }
 }
 
-// Of every point to the nearest whose level is `to` or, if `other`, not; mm, between points.
+// The distance (mm, between points) of every point from the nearest one whose level is `to` or, if `other`, is not.
 Grid<double> distances(const HeightMap& nominal, double to, bool other) {
     const Grid<double>& levels = nominal.height;
     Grid<double> result(levels.columns, levels.rows);
@@ -68,7 +68,7 @@ Grid<double> distances(const HeightMap& nominal, double to, bool other) {
     return result;
 }
 
-// Index of the nominal point next to a place, if the map holds it.
+// The index of the nominal point nearest to a place; none outside the map.
 std::optional<std::size_t> nearest(const HeightMap& nominal, double x, double y) {
     const long column = std::lround((x - nominal.x0) / nominal.pitch_x),
                row = std::lround((y - nominal.y0) / nominal.pitch_y);
@@ -86,7 +86,7 @@ std::vector<PlateauHeight> plateau_heights(const HeightMap& map, const Plateaus&
     std::vector<PlateauHeight> result;
     if (levels.empty())
         return result;
-    // Of each nominal point the level that it counts for: 0 the ground, k the k-th; -1 none.
+    // For each nominal point the level in which it is used: 0 the ground, k the k-th; -1 none.
     std::vector<int> belongs(nominal.height.values.size(), -1);
     std::vector<bool> near(belongs.size(), false), close(belongs.size(), false);
     int index = 0;
@@ -116,7 +116,7 @@ std::vector<PlateauHeight> plateau_heights(const HeightMap& map, const Plateaus&
     };
     std::vector<double> counts(result.size() + 1);
     for_points([&](int, int, int level, double) { counts[static_cast<std::size_t>(level)] += 1; });
-    // Unknowns: the plane, and the plateaus that were measured.
+    // The unknowns are the plane, and the heights of the plateaus that were measured.
     constexpr double least_points = 10;
     std::vector<std::size_t> unknown(result.size());
     std::size_t unknowns = 3;

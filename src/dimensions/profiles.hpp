@@ -1,4 +1,4 @@
-// Profiles across a feature, made of the map's own points.
+// Profiles across a feature, of the map's own points.
 #pragma once
 
 #include "dimensions/feature.hpp"
@@ -8,20 +8,20 @@
 namespace vkfv::dimensions {
 
 struct ProfilePoint {
-    double u = 0, v = 0; // mm, of the frame
+    double u = 0, v = 0; // mm, in the frame
     double height = 0;   // mm
 };
 
-// A strip along u, a point's distance wide, of the measured points in ascending u: not interpolated, whichever way the
-// feature lies. v ascends from strip to strip; one may be empty.
+// Profiles along u: each is a strip, as wide as the points' distance, of the measured points in ascending u. Points are
+// not interpolated, whatever the feature's direction. v ascends from strip to strip; a strip may be empty.
 struct Profiles {
     std::vector<std::vector<ProfilePoint>> lines;
-    double spacing = 0; // mm between points along u, in the mean of a strip without gaps
+    double spacing = 0; // mm, mean distance of points along u in a strip without gaps
 };
 
 Profiles profiles_across(const surface::HeightMap& map, const Frame& frame);
 
-// How far the map reaches from the frame's origin along u: towards -u and towards +u, mm; 0 where the origin lies
+// The distances (mm) from the frame's origin to the map's border towards -u and towards +u; 0 if the origin lies
 // outside.
 struct Reach {
     double before = 0;

@@ -19,7 +19,7 @@ std::optional<SphereForm> sphere_form(const HeightMap& map) {
         return std::nullopt;
     const double side = sphere.convex ? 1 : -1;
     LeastSquares squares(4);
-    std::array<double, 4> functions{}; // unknowns of least_squares_sphere()
+    std::array<double, 4> functions{}; // derivatives by the unknowns of least_squares_sphere()
     const auto functions_at = [&](std::size_t place, std::span<double> values) {
         const auto column = static_cast<int>(place % static_cast<std::size_t>(map.columns()));
         const auto row = static_cast<int>(place / static_cast<std::size_t>(map.columns()));

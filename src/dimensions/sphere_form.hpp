@@ -9,24 +9,25 @@
 
 namespace vkfv::dimensions {
 
-// Of the least-squares sphere by orthogonal distances (surface/sphere.hpp). Lengths in mm.
+// The least-squares sphere by orthogonal distances (surface/sphere.hpp), and the deviations from it. Lengths in mm.
 struct SphereForm {
     surface::Sphere sphere;
-    double radius_error = 0;   // standard error, for residues whose correlation is found (statistics.hpp)
-    double peak_to_valley = 0; // of the points' distances from it along its normals
+    double radius_error = 0;   // standard error, for correlated residues (correlated_errors.hpp)
+    double peak_to_valley = 0; // range of the points' signed distances from the sphere
     double rms = 0;
 };
 
-// Of the points nearer to the frame's origin than nine tenths of the cap's radius on the plane: flanks that were not
-// measured are merely left out. None where less than a quarter of this circle was measured, or no sphere is found.
+// The form of a cap, from the points nearer to the frame's origin than nine tenths of the cap's radius on the plane;
+// flanks that were not measured are simply left out. None if less than a quarter of this circle was measured, or if no
+// sphere is found.
 std::optional<SphereForm> sphere_form(const surface::HeightMap& map, const SphereCap& cap);
 
-// Of all measured points.
+// The form of a sphere through all measured points; none if no sphere is found.
 std::optional<SphereForm> sphere_form(const surface::HeightMap& map);
 
-// Angles of the two flanks against u, rad, positive, mean over the profiles: least-squares lines through what is left
-// of a flank without the sixth of its length at either end. None where fewer than a fifth of the profiles have half of
-// the points of both flanks.
+// The angles of the two flanks to u (rad, positive), averaged over the profiles, from least-squares lines through each
+// flank without the sixth of its length at either end. None if fewer than a fifth of the profiles have half of the
+// points of a flank.
 struct FlankAngles {
     Mean before; // at u < 0
     Mean behind;

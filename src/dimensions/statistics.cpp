@@ -9,7 +9,8 @@
 namespace vkfv::dimensions {
 namespace {
 
-// Sum over pairs `lag` apart of the products about the mean, in lines of `length` points `stride` apart.
+// The autocovariance of values in lines of `length` points `stride` apart: at() is the mean product of deviations over
+// pairs `lag` apart.
 struct Correlation {
     const std::vector<double>& values;
     std::size_t lines, line_stride, length, stride;
@@ -29,8 +30,9 @@ struct Correlation {
         return pairs > 0 ? sum / pairs : 0;
     }
 
-    // rho at lags of 0, 1, ..., up to the first that is no larger than so many of its standard errors by M. Bartlett's
-    // equation for `independent` values; lags of more than a quarter of the length tell nothing.
+    // The correlation at lags of 0, 1, ..., up to the first at which it is no larger than `errors` of its standard
+    // errors by M. Bartlett's equation for `independent` values. Lags above a quarter of the length are not used, as
+    // they have too few pairs.
     std::vector<double> positive(double independent, double errors) const {
         std::vector<double> correlation{1};
         const double variance = at(0);

@@ -14,14 +14,14 @@ namespace {
 
 using surface::HeightMap;
 
-// Turns since the chirp's start, of shaders/physics/surface_function.glsl.
+// The phase of a chirp in turns since its start, as in shaders/physics/surface_function.glsl.
 struct ChirpPhase {
-    double start, stop, sweep; // cycles per mm; per mm^2
+    double start, stop, sweep; // cycles per mm; sweep: cycles per mm^2
 
     explicit ChirpPhase(const Chirp& chirp)
         : start(1 / chirp.period_start), stop(1 / chirp.period_stop), sweep((stop - start) / chirp.length) {}
     double turns(double s) const { return (start + 0.5 * sweep * s) * s; }
-    // Where there are so many turns: the root of the quadratic, without cancellation.
+    // The place of this number of turns: the root of the quadratic in a form without cancellation.
     double place(double turns) const {
         return 2 * turns / (start + std::sqrt(std::max(0.0, start * start + 2 * sweep * turns)));
     }
@@ -45,7 +45,7 @@ Slopes tilt_beside(const Profiles& profiles, const ChirpPhase& phase, double sta
 } // namespace
 
 std::vector<Transfer> chirp_transfer(const HeightMap& map, const Chirp& chirp) {
-    constexpr double least_share = 0.75; // of a wave's points in a profile
+    constexpr double least_share = 0.75; // share of a wave's points that a profile needs
     const Profiles profiles = profiles_across(map, chirp.frame);
     const ChirpPhase phase(chirp);
     const Slopes tilt = tilt_beside(profiles, phase, chirp.start);
@@ -88,7 +88,7 @@ std::vector<Transfer> chirp_transfer(const HeightMap& map, const Chirp& chirp) {
 std::vector<Transfer> star_transfer(const HeightMap& map, const Star& star) {
     constexpr int rings = 12;
     constexpr double least_points = 4, half_width = 0.05;
-    constexpr double inner_share = 0.9; // of the radius: the rim is rounded in pixels and focus windows
+    constexpr double inner_share = 0.9; // share of the radius: pixels and focus windows round the rim
     const double outermost = inner_share * star.radius / (1 + half_width);
     const double innermost = least_points * std::max(map.pitch_x, map.pitch_y) * star.petals / (2 * pi);
     std::vector<Transfer> transfers;
@@ -98,7 +98,7 @@ std::vector<Transfer> star_transfer(const HeightMap& map, const Star& star) {
         const double radius = outermost * std::pow(innermost / outermost, ring / (rings - 1.0));
         Transfer transfer{.period = 2 * pi * radius / star.petals};
         const double inner = radius * (1 - half_width), outer = radius * (1 + half_width);
-        // Harmonics that the points resolve.
+        // The number of harmonics that the points resolve.
         const double points_a_period = transfer.period / std::max(map.pitch_x, map.pitch_y);
         const std::size_t harmonics = points_a_period > 20 ? 3 : points_a_period > 12 ? 2 : 1;
         const auto functions = [&](double x, double y) {
@@ -153,7 +153,7 @@ std::vector<Transfer> star_transfer(const HeightMap& map, const Star& star) {
 std::optional<double> period_at_half(std::vector<Transfer> transfers) {
     std::erase_if(transfers, [](const Transfer& one) { return !std::isfinite(one.ratio); });
     std::ranges::sort(transfers, std::ranges::greater(), &Transfer::period);
-    // From the largest on: noise may lower a longer one.
+    // The search starts at the largest ratio, as noise may reduce that of a longer period.
     transfers.erase(transfers.begin(), std::ranges::max_element(transfers, {}, &Transfer::ratio));
     if (transfers.empty() || transfers.front().ratio < 0.5)
         return std::nullopt;

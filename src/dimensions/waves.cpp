@@ -16,15 +16,15 @@ namespace {
 using surface::HeightMap;
 
 struct Point {
-    double x, y, z;                 // mm, about the frame's origin and the heights' mean
-    std::array<double, 2> distance; // what frequencies are multiplied by
+    double x, y, z;                 // mm, relative to the frame's origin and the heights' mean
+    std::array<double, 2> distance; // mm, factors of the frequency's components in the phase
 };
 
 struct Points {
     std::vector<Point> all;
-    std::vector<std::size_t> places; // in the map
-    std::size_t components;          // of a frequency
-    double extent;                   // mm
+    std::vector<std::size_t> places; // indices into the map
+    std::size_t components;          // number of components of a frequency
+    double extent;                   // mm, over which frequencies are distinguished
 
     std::size_t unknowns(std::size_t waves) const { return 3 + waves * (2 + components); }
 };
@@ -44,7 +44,7 @@ Points points_of(const HeightMap& map, const Frame& frame, bool radial) {
             }
     for (auto& point : points.all)
         point.z -= mean / static_cast<double>(points.all.size());
-    // The diagonal's, or the radius': the shorter of what frequencies can be told apart over.
+    // The extent is twice the largest distance from the frame's origin, for radial waves that distance itself.
     if (radial)
         points.extent /= 2;
     return points;
@@ -54,7 +54,8 @@ double turns(const Wave& wave, const Point& point) {
     return wave.frequency[0] * point.distance[0] + wave.frequency[1] * point.distance[1];
 }
 
-// 1, x, y; of each wave cosine and sine; and with `derivatives` what a change of its frequencies changes.
+// The fit's functions at a point: 1, x, y; cosine and sine of each wave; and with `derivatives` those by the wave's
+// frequencies.
 void functions_at(const Point& point, const std::vector<Wave>& waves, const Points& points, bool derivatives,
                   std::span<double> functions) {
     std::size_t next = 3;
@@ -92,7 +93,8 @@ void take_amplitudes(std::vector<Wave>& waves, const std::vector<double>& unknow
     }
 }
 
-// Of the frequencies given and their neighbours along their own direction, wave by wave, those of greatest amplitude.
+// Chooses, wave by wave, among the given frequency and its neighbours along its own direction, the one of greatest
+// amplitude.
 void choose_starts(const Points& points, std::vector<Wave>& waves) {
     const std::size_t stride = points.all.size() / 50'000 + 1;
     for (auto& wave : waves) {
@@ -115,8 +117,8 @@ void choose_starts(const Points& points, std::vector<Wave>& waves) {
         take_amplitudes(waves, solution->unknowns, 2);
 }
 
-// The mean at each phase of one wave, or of two, is taken off: harmonics that all periods have in common are the
-// standard's shape, and no scatter of its heights. How many means there are.
+// Subtracts the mean at each phase of one wave, or of two: harmonics common to all periods are the standard's shape,
+// not scatter of the heights. Returns the number of means.
 double remove_periodic_part(Grid<double>& residues, const Points& points, const std::vector<Wave>& waves) {
     constexpr double points_a_mean = 24;
     constexpr int most_phases = 256;
@@ -128,7 +130,7 @@ double remove_periodic_part(Grid<double>& residues, const Points& points, const 
     if (phases < 4)
         return 0;
     const int second_phases = waves.size() == 2 ? phases : 1;
-    // A point counts for the four means around its phases, by its nearness; so the mean is linear between them.
+    // A point contributes to the means at the four phases around its own, with bilinear weights.
     const auto shares_of = [&](const Point& point, const auto& visit) {
         std::array<int, 2> lower{}, upper{};
         std::array<double, 2> share{};
@@ -144,7 +146,7 @@ double remove_periodic_part(Grid<double>& residues, const Points& points, const 
                     weight > 0)
                     visit(up ? upper[0] : lower[0], second_up ? upper[1] : lower[1], weight);
     };
-    // Again and again, since a mean over the neighbourhood of a phase rounds off the edges of lines.
+    // Several passes are needed, as each mean over the neighbourhood of a phase rounds the edges of lines.
     constexpr int passes = 4;
     for (int pass = 0; pass < passes; ++pass) {
         Grid<double> sums(phases, second_phases), counts(phases, second_phases);
@@ -195,7 +197,7 @@ std::optional<Waves> fitted(const HeightMap& map, const Points& points, std::vec
     Waves result{.waves = waves};
     Grid<double> residues(map.columns(), map.rows(), surface::undefined);
     std::vector<double> functions(points.unknowns(waves.size()));
-    std::vector<std::size_t> number(residues.values.size()); // of a place's point
+    std::vector<std::size_t> number(residues.values.size()); // index of the point at a place
     double squares = 0;
     for (std::size_t k = 0; k < points.all.size(); ++k) {
         functions_at(points.all[k], waves, points, true, functions);
@@ -213,8 +215,8 @@ std::optional<Waves> fitted(const HeightMap& map, const Points& points, std::vec
             functions_at(points.all[number[place]], waves, points, true, values);
         },
         taken);
-    // The standard error of a sum of changes of the waves: for each wave k, weights of its cosine, its sine and its
-    // frequencies, which is the order of the unknowns.
+    // The standard error of a linear combination of changes of the waves: for each wave k, the weights of its cosine,
+    // its sine and its frequencies, in the order of the unknowns.
     const auto error_of = [&](std::initializer_list<std::pair<std::size_t, std::array<double, 4>>> changes) {
         std::vector<double> weights(points.unknowns(waves.size()));
         for (const auto& [k, change] : changes)
@@ -269,7 +271,7 @@ std::optional<std::array<double, 2>> strongest_frequency(const HeightMap& map,
         for (int column = 0; 2 * column <= spectrum.columns; ++column) {
             const std::array frequency{fourier_frequency(column, spectrum.columns) / map.pitch_x,
                                        fourier_frequency(row, spectrum.rows) / map.pitch_y};
-            // What the plane has taken a part of.
+            // Lower frequencies are skipped, as the plane has removed a part of them.
             if (std::hypot(frequency[0] * width, frequency[1] * height) < 1.5)
                 continue;
             if (apart) {

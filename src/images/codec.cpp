@@ -9,8 +9,8 @@
 #include <filesystem>
 
 #ifdef __SANITIZE_ADDRESS__
-// The leak sanitizer stumbles over the thread-local storage of libraries that are loaded late (g++ 12).
-extern "C" __attribute__((weak)) const char* __asan_default_options(); // a test has its own
+// The leak sanitizer misinterprets the thread-local storage of libraries that are loaded late (g++ 12).
+extern "C" __attribute__((weak)) const char* __asan_default_options(); // a test may define its own
 extern "C" __attribute__((weak)) const char* __asan_default_options() {
     return "intercept_tls_get_addr=0";
 }
@@ -20,8 +20,8 @@ namespace vkfv::images {
 
 namespace {
 
-// Beside the program, or where it was installed; else wherever the loader looks. By a path of its own, since sanitizers
-// hide the program's run path from dlopen(). Never unloaded.
+// Loads the module from beside the program, or from the installation; else wherever the loader finds it. The path is
+// explicit, since sanitizers hide the program's run path from dlopen(). The module is never unloaded.
 void* open_module() {
     const std::filesystem::path name = VKFV_IMAGE_MODULE;
     const auto path = find_installed("lib/vkfv" / name);

@@ -1,6 +1,6 @@
-// What vkfv asks of OpenImageIO. It stands in a module of its own that is loaded with the first image that is read and
-// is no plain TIFF (tiff.hpp), or the first letter that is drawn: the two hundred libraries behind it take longer to
-// load than most commands to run.
+// The functions that vkfv needs of OpenImageIO. They are in a module of its own that is loaded for the first image
+// other than a plain TIFF (tiff.hpp), or the first letter to be drawn: its two hundred libraries take longer to load
+// than most commands to run.
 #pragma once
 
 #include "images/image_file.hpp"
@@ -8,7 +8,7 @@
 
 namespace vkfv::images {
 
-// Functions of image_file.hpp and picture.hpp, by their names.
+// The functions of image_file.hpp and picture.hpp that the module provides, with the same names.
 struct Codec {
     int (*page_count)(const std::filesystem::path& path);
     Grid<float> (*read_image)(const std::filesystem::path& path, int page);
@@ -21,7 +21,7 @@ struct Codec {
     Grid<float> (*drawn)(const DrawnLetter& letter, int columns, int rows);
 };
 
-// Loads the module, once. RunError where it or a library of it is missing.
+// Loads the module at the first call. RunError if it or one of its libraries is missing.
 const Codec& codec();
 
 } // namespace vkfv::images

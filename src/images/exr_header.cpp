@@ -8,9 +8,9 @@ namespace vkfv::images {
 namespace {
 
 constexpr std::string_view magic = "\x76\x2f\x31\x01";
-constexpr std::uint64_t first_attribute = 8;    // behind the magic number and the version
-constexpr std::uint32_t several_parts = 0x1000; // of the version's flags
-// The library makes room for whole tiles as it opens a file; those in use have sides of tens to hundreds of pixels.
+constexpr std::uint64_t first_attribute = 8;    // offset behind the magic number and the version
+constexpr std::uint32_t several_parts = 0x1000; // flag in the version field
+// The library allocates whole tiles when it opens a file; tiles in use have sides of tens to hundreds of pixels.
 constexpr std::uint64_t most_pixels_of_a_tile = std::uint64_t{1} << 24;
 
 } // namespace
@@ -19,8 +19,8 @@ bool looks_like_exr(std::string_view bytes) {
     return bytes.starts_with(magic);
 }
 
-// "OpenEXR File Layout": attributes of name, type, both ended by a zero, length and value; a zero ends a header, and in
-// a file of several parts another one ends the headers.
+// By "OpenEXR File Layout" an attribute consists of name, type, both ended by a zero, length and value; a zero ends a
+// header, and in a file of several parts another one ends the headers.
 void check_exr_attributes(std::string_view bytes, const std::filesystem::path& path) {
     const ByteReader file(bytes, path);
     const bool parts = (file.at<std::uint32_t>(magic.size(), "version") & several_parts) != 0;

@@ -1,4 +1,4 @@
-// Checks of an OpenEXR file before the library opens it.
+// Checks an OpenEXR file before the library opens it.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@ namespace vkfv::images {
 
 bool looks_like_exr(std::string_view bytes);
 
-// The library makes room for an attribute's text before it looks whether the file is long enough: a few hundred bytes
-// may ask for 2 GiB. Throws InputError if an attribute of any of the file's headers is longer than what is left of it.
+// Throws InputError if an attribute of any of the file's headers is longer than the rest of the file. The library
+// allocates an attribute's text before it compares its length with the file: a few hundred bytes may claim 2 GiB.
 void check_exr_attributes(std::string_view bytes, const std::filesystem::path& path);
 
 } // namespace vkfv::images

@@ -1,4 +1,4 @@
-// What vkfv writes itself is read by libtiff; of any other file OpenImageIO says what is in it, or wrong with it.
+// Files that vkfv wrote are read by libtiff; all others, and errors in them, are left to OpenImageIO.
 #include "images/image_file.hpp"
 
 #include "images/codec.hpp"
@@ -10,7 +10,7 @@
 namespace vkfv::images {
 namespace {
 
-// OpenImageIO takes a file for what its name ends in, so that other endings are its own affair.
+// The plain TIFF at a path with a TIFF's ending; none otherwise, as OpenImageIO decides by the name's ending.
 std::optional<PlainTiff> plain_file(const std::filesystem::path& path, TiffPart part) {
     const auto ending = path.extension();
     return ending == ".tif" || ending == ".tiff" ? plain_tiff_file(path, part) : std::nullopt;
@@ -62,7 +62,7 @@ std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int pa
 }
 
 ImageStatement image_statement(const std::filesystem::path& path) {
-    return codec().image_statement(path); // plain TIFFs too: it is asked once for a stack
+    return codec().image_statement(path); // plain TIFFs too, as it is called once for a stack
 }
 
 StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path) {
@@ -82,7 +82,7 @@ DescribedImage parse_image(std::string_view bytes, const std::filesystem::path& 
 }
 
 Grid<float> parse_grey(std::string_view bytes, std::uint64_t most_pixels, const std::filesystem::path& path) {
-    // Integers are scaled to 0..1 there.
+    // Only floats are taken here, as OpenImageIO scales integers to 0..1.
     const auto image = plain_tiff(bytes, TiffPart::all);
     const auto finite = [](float value) { return std::isfinite(value); };
     if (image && image->channels == 1 && !image->integers && image->columns >= 2 && image->rows >= 2 &&

@@ -19,65 +19,67 @@
 
 namespace vkfv::images {
 
-// What a TIFF says of its pixels beside their values.
+// The properties of the pixels that a TIFF states besides their values. The pitches are written as pixels per cm, which
+// Fiji converts to micrometres for pitches below 10 um.
 struct ImageTags {
-    double pitch_x = 0;      // mm in the object plane; 0 leaves out the resolution tags. Written in pixels per cm,
-    double pitch_y = 0;      // which Fiji turns into micrometres for pitches below 10 um
-    std::string description; // ImageDescription: ASCII
+    double pitch_x = 0;      // mm in the object plane; 0 omits the resolution tags
+    double pitch_y = 0;      // mm in the object plane
+    std::string description; // ImageDescription, ASCII
 };
 
-// A TIFF file: float32, one page.
+// The bytes of a TIFF file of one page, float32.
 std::string tiff_bytes(const Grid<float>& image, const ImageTags& tags = {});
-// The same with several channels a pixel, as many as there are images; all of one size.
+// The bytes of a TIFF file of one page, float32, with a channel for each image; all images have one size.
 std::string tiff_bytes(const std::vector<Grid<float>>& channels, const ImageTags& tags = {});
-// uint16 or uint8, one page.
+// The bytes of a TIFF file of one page, uint16 or uint8.
 std::string tiff_bytes(const Grid<std::uint16_t>& image, const ImageTags& tags = {});
 std::string tiff_bytes(const Grid<std::uint8_t>& image, const ImageTags& tags = {});
 
-// Number of pages (TIFF directories) of an image file.
+// The number of pages (TIFF directories) of an image file.
 int page_count(const std::filesystem::path& path);
 
-// One page of a single-channel image in any format that OpenImageIO reads; integers keep their stored value
+// Reads one page of a single-channel image in any format that OpenImageIO supports; integers keep their stored value
 // (they are not scaled to 0..1). `page` counts from 0.
 Grid<float> read_image(const std::filesystem::path& path, int page = 0);
 
-// The same of grey or colour, a grid a channel; an alpha channel is left out.
+// Reads one page of a grey or colour image, a grid for each channel; an alpha channel is left out.
 std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page = 0);
 
-// The size of an image file's first page, its description, its date, and how many of its pixels make a unit of length.
+// The properties of an image file's first page: its size, description and date, and its pixels per unit of length.
 struct ImageStatement {
     int columns = 0;
     int rows = 0;
     int channels = 0;            // without opacity
-    std::string description{};   // ImageDescription; empty without one
-    double columns_per_unit = 0; // resolution tags of a TIFF; 0: none
-    double rows_per_unit = 0;    // likewise
+    std::string description{};   // ImageDescription; empty if missing
+    double columns_per_unit = 0; // from the resolution tags of a TIFF; 0: none
+    double rows_per_unit = 0;    // from the resolution tags of a TIFF; 0: none
     enum class Unit { none, inch, centimetre };
-    Unit unit = Unit::none; // theirs
-    std::string date{};     // when it was taken, "2026:01:31 12:00:00" in local time; empty: it is not stated
+    Unit unit = Unit::none; // unit of columns_per_unit and rows_per_unit
+    std::string date{};     // time of recording, "2026:01:31 12:00:00" in local time; empty if not stated
 };
 ImageStatement image_statement(const std::filesystem::path& path);
 
 struct StoredImage {
     Grid<float> values;      // as stored
-    std::string description; // ImageDescription; empty without one
+    std::string description; // ImageDescription; empty if missing
 };
 
-// The first page of a whole single-channel TIFF file in memory; `path` names it in messages.
+// Reads the first page of a single-channel TIFF file in memory; `path` names it in messages.
 StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path);
 
 struct DescribedImage {
     Grid<double> values;         // as stored
-    std::string description;     // ImageDescription; empty without one
-    double columns_per_unit = 0; // resolution tags of a TIFF that ImageJ wrote; 0: none
-    double rows_per_unit = 0;    // likewise
+    std::string description;     // ImageDescription; empty if missing
+    double columns_per_unit = 0; // from the resolution tags of a TIFF that ImageJ wrote; 0: none
+    double rows_per_unit = 0;    // from the resolution tags of a TIFF that ImageJ wrote; 0: none
 };
 
-// The first page of a whole single-channel file in memory; `path` names it in messages.
+// Reads the first page of a single-channel file in memory; `path` names it in messages.
 DescribedImage parse_image(std::string_view bytes, const std::filesystem::path& path);
 
-// Heights or a mask: one grey channel of any format, whole in memory, without its opacity. At least 2 x 2 pixels and at
-// most so many; finite values. Rows are read in bands, so that a header which lies about the size fills no memory.
+// Reads heights or a mask: one grey channel of any format, the file in memory, without opacity. The image has at least
+// 2 x 2 pixels and at most `most_pixels`, with finite values. Rows are read in bands, so that a header with a false
+// size cannot exhaust the memory.
 Grid<float> parse_grey(std::string_view bytes, std::uint64_t most_pixels, const std::filesystem::path& path);
 
 } // namespace vkfv::images

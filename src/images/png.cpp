@@ -1,4 +1,4 @@
-// PNG by libpng: what images/picture.hpp promises.
+// PNG by libpng: implements functions of images/picture.hpp.
 #include "core/messages/error.hpp"
 #include "images/picture.hpp"
 
@@ -30,11 +30,11 @@ void append_bytes(png_structp png, png_bytep bytes, std::size_t count) {
 struct Pixels {
     int columns;
     int rows;
-    int channels; // 3 or 1
+    int channels; // 3: colour; 1: grey
     const std::uint8_t* values;
 };
 
-// libpng jumps back to here where it fails: nothing that it jumps over may need a destructor.
+// libpng jumps back to this function when it fails, so no object between may need a destructor.
 bool encode(png_structp png, png_infop info, PngTarget& target, const Pixels& pixels) {
     if (setjmp(png_jmpbuf(png)) != 0) {
         return false;
@@ -43,8 +43,8 @@ bool encode(png_structp png, png_infop info, PngTarget& target, const Pixels& pi
     png_set_IHDR(png, info, static_cast<png_uint_32>(pixels.columns), static_cast<png_uint_32>(pixels.rows), 8,
                  pixels.channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_compression_strategy(png, Z_DEFAULT_STRATEGY); // as fast as libpng's own choice, and these bytes are known
-    // These say nothing. They stand in all pictures that vkfv has drawn, whose bytes are these.
+    png_set_compression_strategy(png, Z_DEFAULT_STRATEGY); // as fast as libpng's own choice, and gives the known bytes
+    // Constant chunks without meaning, kept for byte-identical files.
     png_set_oFFs(png, info, 0, 0, PNG_OFFSET_PIXEL);
     const png_time epoch{.year = 1970, .month = 1, .day = 1, .hour = 0, .minute = 0, .second = 0};
     png_set_tIME(png, info, &epoch);

@@ -8,7 +8,7 @@
 namespace vkfv::images {
 namespace {
 
-// Words of a header, between blanks and comments that go to the end of their line.
+// The words of a header, between blanks and comments that extend to the end of their line.
 class Words {
   public:
     Words(std::string_view bytes, const ByteReader& file) : bytes_(bytes), file_(file) {}
@@ -42,7 +42,7 @@ class Words {
 
     std::string_view bytes_;
     const ByteReader& file_;
-    std::uint64_t at_ = 2; // behind "P5"
+    std::uint64_t at_ = 2; // offset behind "P5"
 };
 
 } // namespace
@@ -71,7 +71,7 @@ void check_pnm(std::string_view bytes, const std::filesystem::path& path) {
         value_bytes = largest > 255 ? 2 : 1;
     }
     const std::uint64_t values = columns * (kind == '3' || kind == '6' || kind == 'F' ? 3 : 1);
-    // Of text a digit a value, and a blank before each but those of bits.
+    // In text each value takes at least a digit, and a blank before it unless it is a bit.
     const std::uint64_t row_bytes = text   ? (bits ? values : 2 * values)
                                     : bits ? (values + 7) / 8
                                            : values * value_bytes;

@@ -1,4 +1,4 @@
-// Checks of a PNM file (PBM, PGM, PPM, PFM) before the library opens it.
+// Checks a PNM file (PBM, PGM, PPM, PFM) before the library opens it.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@ namespace vkfv::images {
 
 bool looks_like_pnm(std::string_view bytes);
 
-// The library takes values that are not there for zeros if the largest one is said to be 0. Throws InputError if the
-// header is none, or the file is shorter than its pixels take up at least.
+// Throws InputError if the header is invalid, or if the file is shorter than its pixels need at least. The library
+// itself takes missing values for zeros if the header states a largest value of 0.
 void check_pnm(std::string_view bytes, const std::filesystem::path& path);
 
 } // namespace vkfv::images

@@ -20,14 +20,14 @@ namespace {
 constexpr double mm_per_cm = 10.0;
 constexpr int colours = 3;
 
-// What libtiff reads or writes, and what it said.
+// The bytes that libtiff reads or writes, and its message.
 struct TiffBytes {
     std::string written{};
     std::string_view there{};
-    const InputFile* file = nullptr; // in place of `there`
+    const InputFile* file = nullptr; // used instead of `there`
     std::uint64_t size = 0;
     std::uint64_t place = 0;
-    std::string message{}; // the last of errors and warnings
+    std::string message{}; // the last error or warning
 };
 
 TiffBytes& of(thandle_t handle) {
@@ -71,7 +71,7 @@ int keep_message(TIFF*, void* user, const char*, const char* format, va_list arg
     std::array<char, 500> text{};
     (void)std::vsnprintf(text.data(), text.size(), format, arguments);
     of(user).message = text.data();
-    return 1; // libtiff's own handlers, which are the whole program's, are left alone
+    return 1; // leaves libtiff's own handlers, which are global, unchanged
 }
 
 struct CloseTiff {
@@ -89,7 +89,7 @@ OpenTiff open_tiff(TiffBytes& bytes, const char* mode) {
         [](thandle_t handle) -> toff_t { return of(handle).size; }, nullptr, nullptr, options.get()));
 }
 
-// --- Writing
+// --- Writing ---
 
 // Three channels are colours, a fourth is opacity; fewer are grey.
 int photometric(int channels) {
@@ -108,7 +108,7 @@ std::vector<std::uint16_t> extra_samples(int channels) {
 void set_resolution(TIFF* tiff, const ImageTags& tags) {
     float x = static_cast<float>(mm_per_cm / tags.pitch_x);
     const bool coarse = x < 1 || static_cast<float>(mm_per_cm / tags.pitch_y) < 1;
-    if (coarse) { // than a pixel per cm: the ratio alone
+    if (coarse) { // more than a cm per pixel: only the ratio is written
         x = 1;
     }
     TIFFSetField(tiff, TIFFTAG_RESOLUTIONUNIT, coarse ? RESUNIT_NONE : RESUNIT_CENTIMETER);
@@ -145,7 +145,7 @@ std::string single_page(std::span<const Grid<Value>> channels, const ImageTags& 
     }
     constexpr std::size_t directory_bytes = 4096; // with room to spare
     bytes.written.reserve(value_bytes + tags.description.size() + directory_bytes);
-    // Offsets of 4 bytes reach to 4 GiB.
+    // 4-byte offsets reach up to 4 GiB.
     constexpr std::size_t most_for_short_offsets = std::size_t{4000} << 20;
     OpenTiff tiff = open_tiff(bytes, value_bytes > most_for_short_offsets ? "w8" : "w");
     if (!tiff) {
@@ -165,7 +165,7 @@ std::string single_page(std::span<const Grid<Value>> channels, const ImageTags& 
         set(TIFFTAG_EXTRASAMPLES, static_cast<int>(extra.size()), extra.data());
     }
     set(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-    // Neither says anything. They stand in all images that vkfv has written, whose bytes are these.
+    // Constant tags without meaning, kept for byte-identical files.
     set(TIFFTAG_SOFTWARE, "vkfv");
     set(TIFFTAG_DATETIME, "1970:01:01 00:00:00");
     if (!tags.description.empty()) {
@@ -174,7 +174,8 @@ std::string single_page(std::span<const Grid<Value>> channels, const ImageTags& 
     if (tags.pitch_x > 0 && tags.pitch_y > 0) {
         set_resolution(tiff.get(), tags);
     }
-    // The directory before the values: its place is taken here, and it is written there again when they are known.
+    // The directory comes before the values: the checkpoint reserves its place, and it is rewritten there once they are
+    // known.
     const bool good = TIFFCheckpointDirectory(tiff.get()) == 1 &&
                       TIFFWriteEncodedStrip(tiff.get(), 0, values.data(), static_cast<tmsize_t>(value_bytes)) ==
                           static_cast<tmsize_t>(value_bytes) &&
@@ -186,9 +187,9 @@ std::string single_page(std::span<const Grid<Value>> channels, const ImageTags& 
     return std::move(bytes.written);
 }
 
-// --- Reading
+// --- Reading ---
 
-// More than this many columns or rows, or pixels, are left to OpenImageIO to accept or refuse.
+// Larger images are left to OpenImageIO to accept or refuse.
 constexpr std::uint32_t longest_side = 1 << 16;
 constexpr std::uint64_t most_pixels = 1 << 28;
 constexpr int most_channels = 64;
@@ -201,8 +202,8 @@ Value field(TIFF* tiff, std::uint32_t tag) {
     return value;
 }
 
-// Whether the page has none but the tags that vkfv writes. libtiff gives no list of all tags: those known here must be
-// as many as the directory says it has.
+// True if the page has only tags that vkfv writes. libtiff has no list of all tags of a page, so those known here are
+// counted and compared with the directory's count.
 bool known_tags_only(TIFF* tiff, TiffBytes& bytes) {
     std::uint16_t entries = 0;
     bytes.place = TIFFCurrentDirOffset(tiff);
@@ -216,7 +217,7 @@ bool known_tags_only(TIFF* tiff, TiffBytes& bytes) {
         TIFFTAG_PLANARCONFIG, TIFFTAG_YRESOLUTION,  TIFFTAG_RESOLUTIONUNIT,  TIFFTAG_SOFTWARE,
         TIFFTAG_SAMPLEFORMAT, TIFFTAG_DATETIME,     TIFFTAG_EXTRASAMPLES};
     const auto there = [&](int tag) {
-        std::array<void*, 2> value{}; // a number, a pointer, or a number and a pointer
+        std::array<void*, 2> value{}; // receives a number, a pointer, or both
         return TIFFGetField(tiff, static_cast<std::uint32_t>(tag), &value[0], &value[1]) == 1;
     };
     return std::count_if(known.begin(), known.end(), there) == entries;
@@ -229,8 +230,8 @@ bool has_extra_samples(TIFF* tiff, int channels) {
     return std::ranges::equal(std::span(found, count), extra_samples(channels));
 }
 
-// The description as OpenImageIO gives it; none where it takes out digests and colours, by which it marks its own
-// files.
+// The description as OpenImageIO would return it; none if it contains digests or colours, which OpenImageIO removes as
+// its own marks.
 std::optional<std::string> plain_description(TIFF* tiff) {
     const char* text = nullptr;
     if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) != 1 || text == nullptr) {
@@ -252,13 +253,13 @@ bool read_strip(TIFF* tiff, std::vector<Value>& values, std::uint64_t count) {
 }
 
 std::optional<PlainTiff> read_plain(TiffBytes& bytes, TiffPart part) {
-    // Little-endian, with offsets of 4 bytes: what follows is libtiff's to read only in this case.
+    // The directory below can be interpreted only if it is little-endian with offsets of 4 bytes.
     std::array<char, 4> magic{};
     if (read_some(&bytes, magic.data(), magic.size()) != magic.size() || std::memcmp(magic.data(), "II*", 4) != 0) {
         return std::nullopt;
     }
     bytes.place = 0;
-    const OpenTiff open = open_tiff(bytes, "rmc"); // m: not mapped; c: strips as they are
+    const OpenTiff open = open_tiff(bytes, "rmc"); // m: not memory-mapped; c: strips unchanged
     TIFF* const tiff = open.get();
     if (tiff == nullptr || !bytes.message.empty() || TIFFLastDirectory(tiff) == 0 || TIFFIsTiled(tiff) != 0) {
         return std::nullopt;
@@ -330,7 +331,7 @@ std::string tiff_text(std::string_view bytes, std::uint32_t tag) {
     }
     TiffBytes source{.there = bytes, .size = bytes.size()};
     const OpenTiff tiff = open_tiff(source, "rmc");
-    // libtiff gives a tag that it does not know with its count.
+    // For a tag that it does not know, libtiff also returns the count.
     std::uint32_t count = 0;
     const char* text = nullptr;
     const TIFFField* field = tiff ? TIFFFindField(tiff.get(), tag, TIFF_ASCII) : nullptr;

@@ -1,5 +1,5 @@
-// Plain TIFFs, the kind that vkfv writes, by libtiff: without the module of OpenImageIO (codec.hpp), which takes longer
-// to load than most commands to run.
+// Reads and writes plain TIFFs, the kind that vkfv writes, by libtiff: without the module of OpenImageIO (codec.hpp),
+// which takes longer to load than most commands to run.
 #pragma once
 
 #include "images/image_file.hpp"
@@ -13,22 +13,22 @@
 
 namespace vkfv::images {
 
-// At least one channel, all of one size. RunError where there is no pixel, or libtiff cannot.
+// The bytes of a TIFF of at least one channel, all of one size. RunError if there is no pixel, or if libtiff fails.
 std::string tiff_of_floats(std::span<const Grid<float>> channels, const ImageTags& tags);
 std::string tiff_of_integers(const Grid<std::uint16_t>& image, const ImageTags& tags);
 std::string tiff_of_integers(const Grid<std::uint8_t>& image, const ImageTags& tags);
 
-// One page of float32, uint16 or uint8 in one uncompressed strip, with the tags that vkfv writes and no other.
+// A plain TIFF: one page of float32, uint16 or uint8 in one uncompressed strip, with only tags that vkfv writes.
 struct PlainTiff {
     int columns = 0;
     int rows = 0;
     int channels = 0;
-    bool integers = false;       // uint16 or uint8, else float32
-    std::string description{};   // ImageDescription; empty without one
-    std::vector<float> floats{}; // all channels of a pixel, then the next pixel; the first row has the highest y
-    std::vector<std::uint16_t> counts{}; // the same of integers
+    bool integers = false;               // true: uint16 or uint8; false: float32
+    std::string description{};           // ImageDescription; empty if missing
+    std::vector<float> floats{};         // pixel by pixel, all channels of each; the first row has the highest y
+    std::vector<std::uint16_t> counts{}; // integer values in the same order
 
-    // As stored, row 0 lowest.
+    // A channel as stored, row 0 lowest.
     template <class Value>
     Grid<Value> channel(int index) const {
         Grid<Value> grid(columns, rows);
@@ -41,19 +41,20 @@ struct PlainTiff {
         }
         return grid;
     }
-    // Of four and more channels the fourth is opacity.
+    // True for the fourth of four and more channels.
     bool opacity(int channel) const { return channel == 3; }
 };
 
 enum class TiffPart { header, all }; // header: without the values
 
-// None where the file is anything else, damaged, or of more pixels than any reader takes: then OpenImageIO has to say
-// what it is. Room is made for no more values than the file has.
+// Parses a plain TIFF. None if the file is anything else, damaged, or larger than any reader accepts: OpenImageIO then
+// identifies it. No more values are allocated than the file contains.
 std::optional<PlainTiff> plain_tiff(std::string_view bytes, TiffPart part);
-// Throws InputError where there is no such regular file.
+// Reads a plain TIFF from a file. Throws InputError if there is no such regular file.
 std::optional<PlainTiff> plain_tiff_file(const std::filesystem::path& path, TiffPart part);
 
-// The text of a tag of the first page, as programs of other fields define their own; empty: it is no TIFF, or has none.
+// The text of a tag of the first page, such as other programs define for themselves; empty if the file is no TIFF, or
+// lacks the tag.
 std::string tiff_text(std::string_view bytes, std::uint32_t tag);
 
 } // namespace vkfv::images

@@ -78,7 +78,7 @@ Field text(Tag tag, const std::string& ascii) {
             .value = std::string(ascii.c_str(), ascii.size() + 1)};
 }
 
-// The finest that two numbers of 32 bits make.
+// A ratio of two 32-bit numbers that approximates a number as closely as possible.
 Field ratio(Tag tag, double number) {
     constexpr double most = std::numeric_limits<std::uint32_t>::max();
     const double denominator = std::clamp(std::floor(most / number), 1.0, most);
@@ -88,8 +88,8 @@ Field ratio(Tag tag, double number) {
     return result;
 }
 
-// ImageJ's labels of slices: a header that says what follows, then the texts in UTF-16; the other tag has the length of
-// each. Its words are in the file's order of bytes.
+// ImageJ's labels of slices: a header that lists the contents, followed by the texts in UTF-16; the other tag has the
+// length of each. Their words have the byte order of the file.
 std::pair<Field, Field> labels_of(const std::vector<std::string>& pages) {
     const auto word = [](const char* letters) {
         std::uint32_t value = 0;
@@ -119,13 +119,13 @@ std::string imagej_text(const TiffStack& stack) {
     const std::size_t count = stack.pages.size();
     std::string lines = fmt::format("ImageJ=1.53t\nimages={}\nslices={}\nunit=um\n", count, count);
     if (stack.step != 0) {
-        // The place of height 0, counted in slices from the first.
+        // The slice of height 0, counted from the first slice, is the origin.
         lines += fmt::format("spacing={:.12g}\nzorigin={:.12g}\n", stack.step, -stack.first / stack.step + 0.0);
     }
     return lines + "loop=false\n" + stack.notes;
 }
 
-// Where directories and their numbers are of 4 bytes, or of 8.
+// The size of numbers in directories: 4 bytes, or 8 in a BigTIFF.
 struct Format {
     bool big;
 
@@ -141,7 +141,7 @@ struct Format {
     std::size_t count_bytes() const { return big ? 8 : 2; }
 };
 
-constexpr std::size_t alignment = 16; // of what stands outside of a directory
+constexpr std::size_t alignment = 16; // alignment of data outside a directory
 
 std::size_t aligned(std::size_t size) {
     return (size + alignment - 1) / alignment * alignment;
@@ -167,7 +167,7 @@ std::vector<Field> fields_of(const TiffStack& stack, std::size_t page, std::uint
                                  word(Tag::strip_bytes, value_bytes),
                                  ratio(Tag::x_resolution, 1 / stack.pitch),
                                  ratio(Tag::y_resolution, 1 / stack.pitch),
-                                 two_bytes(Tag::resolution_unit, none), // ImageJ's text names it
+                                 two_bytes(Tag::resolution_unit, none), // the unit is in ImageJ's text
                                  text(Tag::software, "vkfv"),
                                  two_bytes(Tag::sample_format, bits == 32 ? floating : unsigned_integer)};
     if (page == 0) {
@@ -186,7 +186,7 @@ std::size_t directory_bytes(const std::vector<Field>& fields, const Format& form
     return size;
 }
 
-// A directory that stands at `place`, with its values behind it.
+// The bytes of a directory at the offset `place`, with its values behind it.
 std::string directory(const std::vector<Field>& fields, std::uint64_t place, bool last, const Format& format) {
     std::string entries;
     std::string outside;

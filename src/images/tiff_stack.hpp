@@ -1,6 +1,6 @@
-// A stack of images as one TIFF, calibrated as ImageJ writes it: all directories, then all values as one block, which
-// is how ImageJ reads a stack; each page is a TIFF image of its own for other readers. libtiff writes a page's
-// directory before its values, so it cannot make this.
+// Writes a stack of images as one TIFF with ImageJ's calibration: first all directories, then all values as one block,
+// as ImageJ reads stacks; for other readers each page is a TIFF image of its own. libtiff cannot write it, as it writes
+// a page's directory before its values.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -18,19 +18,20 @@ struct TiffStack {
     int columns = 0;
     int rows = 0;
     PixelBits bits = PixelBits::float32;
-    double pitch = 0;                 // of columns and rows, um
-    double first = 0;                 // height of the first image, um
-    double step = 0;                  // from one image to the next, um; 0: there is one image
-    std::string notes{};              // lines of the first ImageDescription, below those of ImageJ: ASCII
-    std::vector<std::string> pages{}; // of each image: its label in ImageJ, and the others' ImageDescription; ASCII
+    double pitch = 0;    // um, of columns and rows
+    double first = 0;    // um, height of the first image
+    double step = 0;     // um, from one image to the next; 0: a single image
+    std::string notes{}; // lines below ImageJ's in the first ImageDescription, ASCII
+    // For each image its label in ImageJ, and the ImageDescription of all but the first; ASCII.
+    std::vector<std::string> pages{};
 };
 
-// All that stands before the values. They follow: image after image, the first row with the highest y, each value in
-// the machine's order of bytes, which the file states. Beyond 4 GB of all the file is a BigTIFF, which tifffile and
-// Bio-Formats read, and ImageJ alone does not.
+// The bytes before the values. The values follow image by image, the first row with the highest y, in the machine's
+// byte order, which the file states. A file above 4 GB is a BigTIFF, which tifffile and Bio-Formats read, but ImageJ
+// alone does not.
 std::string tiff_stack_head(const TiffStack& stack);
 
-// Values of one image in that order.
+// The values of one image in this order.
 template <class Value>
 std::string tiff_stack_values(const Grid<Value>& image) {
     std::string bytes;

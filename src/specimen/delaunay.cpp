@@ -10,7 +10,7 @@
 namespace vkfv::specimen {
 namespace {
 
-// Boost.Polygon's predicates are exact for such coordinates, and for such alone.
+// Boost.Polygon's predicates are exact for 32-bit integer coordinates, and only for these.
 using GridPoint = boost::polygon::point_data<std::int32_t>;
 using Voronoi = boost::polygon::voronoi_diagram<double>;
 using Vertex = Voronoi::vertex_type;
@@ -23,10 +23,10 @@ std::vector<GridPoint> on_grid(std::span<const glm::dvec2> points) {
         lower = glm::min(lower, point);
         upper = glm::max(upper, point);
     }
-    // One scale for both, or circles would become ellipses.
+    // Both axes have the same scale, so that circles stay circles.
     constexpr double largest = std::numeric_limits<std::int32_t>::max();
     const glm::dvec2 middle = 0.5 * lower + 0.5 * upper;
-    const glm::dvec2 halves = 0.5 * upper - 0.5 * lower; // finite, unlike their sums
+    const glm::dvec2 halves = 0.5 * upper - 0.5 * lower; // finite even where upper - lower would overflow
     const double half = std::max(halves.x, halves.y);
     const auto coordinate = [&](double offset) {
         return half > 0 ? static_cast<std::int32_t>(std::lround(std::clamp(offset / half, -1.0, 1.0) * largest)) : 0;
@@ -43,7 +43,7 @@ bool same_place(const GridPoint& a, const GridPoint& b) {
     return a.x() == b.x() && a.y() == b.y();
 }
 
-// Indices of the first point at each place, in ascending order; `place` as in DelaunayTriangulation.
+// The indices of the first point at each place, in ascending order; fills `place` of DelaunayTriangulation.
 std::vector<std::uint32_t> distinct(const std::vector<GridPoint>& grid, std::vector<std::uint32_t>& place) {
     std::vector<std::uint32_t> order(grid.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -73,8 +73,8 @@ bool is_sliver(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
     return ab.x * bc.y - ab.y * bc.x <= thinnest_sliver * longest_squared;
 }
 
-// A vertex of the Voronoi diagram is the centre of the circle through the points around it: the corners of a triangle,
-// or of a polygon where more of them lie on the circle.
+// The triangles around the vertices of a Voronoi diagram. A vertex is the centre of the circle through the points
+// around it: the corners of a triangle, or of a polygon if more of them lie on the circle.
 class Circles {
   public:
     Circles(const std::vector<GridPoint>& grid, const std::vector<std::uint32_t>& points)
@@ -102,7 +102,7 @@ class Circles {
   private:
     static constexpr Vertex::color_type seen = 1, peeled = 2;
 
-    // Takes the slivers away from outside, as far as they go.
+    // Marks slivers as peeled, from the border inwards, until none is left there.
     void peel() {
         std::vector<const Vertex*> border;
         const auto reach = [&](const Vertex* vertex) {
@@ -140,7 +140,7 @@ class Circles {
         } while (edge != vertex.incident_edge());
     }
 
-    // The triangles of the polygon around it share the point of the lowest index.
+    // Appends the triangles of the polygon around a vertex; they share the point of the lowest index.
     void append(const Vertex& vertex, std::vector<glm::uvec3>& triangles) {
         corners_.clear();
         around(vertex, [&](const Edge& edge) { corners_.push_back(points_[edge.cell()->source_index()]); });

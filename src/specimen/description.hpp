@@ -1,4 +1,4 @@
-// What a configuration says of the specimen, and the specimen made from it. Lengths in mm, angles in rad.
+// The specimen as a configuration describes it, and the specimen made from it. Lengths in mm, angles in rad.
 #pragma once
 
 #include "specimen/roughness.hpp"
@@ -17,42 +17,42 @@
 namespace vkfv::specimen {
 
 struct Description {
-    Shape shape{};                        // of one of the kinds in specimen/kinds/
-    std::optional<Roughness> roughness{}; // added to any kind but a mesh
+    Shape shape{};                        // one of the kinds in specimen/kinds/
+    std::optional<Roughness> roughness{}; // added to all kinds but meshes
     Material material{};
     std::optional<Reflectance> reflectance{};
-    SourceLocation where{}; // of the [specimen] table or its `file`, for messages
+    SourceLocation where{}; // place of the [specimen] table or of its `file`, for messages
 
     bool operator==(const Description&) const = default;
 };
 
-// Throws InputError: missing or damaged files (with the byte offset), empty meshes, non-finite numbers, a footprint of
-// no extent, lengths that no device can hold apart, and more points than fit into memory, told before any is made. Keys
-// are those of the configuration ("specimen.pitch_um").
+// Makes the specimen. Throws InputError, before any point is made, for missing or damaged files (with the byte offset),
+// empty meshes, non-finite numbers, a footprint without extent, lengths that a device's floats cannot distinguish, and
+// more points than fit into memory. Keys are those of the configuration ("specimen.pitch_um").
 Specimen make(const Description& description);
 
-// What a pixel sees of the object plane, mm: a parallelogram.
+// The area of the object plane that a pixel sees (mm): a parallelogram.
 struct PixelArea {
     glm::dvec2 middle = glm::dvec2(0);
-    glm::dvec2 along_row = glm::dvec2(0);    // its sides: from one column to the next,
-    glm::dvec2 along_column = glm::dvec2(0); // and from one row to the next
+    glm::dvec2 along_row = glm::dvec2(0);    // side from one column to the next
+    glm::dvec2 along_column = glm::dvec2(0); // side from one row to the next
 };
 
-// Truth on the detector's pixels: the mean of the surface's height over each pixel's area (5 x 5 points), seen from
-// +z (the uppermost surface). Points off the specimen are NaN. The map stands on the grid, wherever the pixels look;
-// area_of is called by several threads.
+// The true height on the detector's pixels: the mean of the surface's height over each pixel's area (5 x 5 points),
+// seen from +z (the uppermost surface). Points off the specimen are NaN. The map has the grid's coordinates, wherever
+// the pixels look; area_of is called by several threads.
 surface::HeightMap truth(const Specimen& specimen, const PixelGrid& grid,
                          const std::function<PixelArea(int column, int row)>& area_of);
-// Where the pixels look at the grid's own points.
+// The true height for pixels that look at the grid's own points.
 surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double x0, double y0, double pitch_x,
                          double pitch_y);
 
-// The record the trace takes (bounds, kind, shape, lattice); top and bottom enclose the surface.
+// The record that the trace takes (bounds, kind, shape, lattice); top and bottom enclose the surface.
 physics::f64::SpecimenRecord record(const Specimen& specimen, int max_bounces);
-// The same without the material.
+// The record without the material.
 physics::f64::SpecimenRecord record_of_geometry(const Specimen& specimen);
 
-// What it covers of the object plane, mm.
+// The rectangle of the object plane that the specimen covers, mm.
 struct Footprint {
     double x_min, y_min, x_max, y_max;
 };

@@ -1,14 +1,15 @@
-// Keys that kinds of specimens from a file share.
+// Keys shared by the kinds of specimens that are read from a file.
 #pragma once
 
 #include "core/keys/section.hpp"
 
 namespace vkfv::specimen {
 
-// `file`, which must be given.
+// The required key `file`.
 FileKey needed_file_key(std::string meaning);
 
-// `unit`, whose value is mm per unit of the file; without a fallback there is none, unless the key says more.
+// The key `unit`, whose value is mm per unit of the file. Without a fallback it has no default, unless the key's text
+// states one.
 ChoiceKey<double> unit_key(std::optional<double> fallback, std::string meaning);
 
 } // namespace vkfv::specimen

@@ -11,14 +11,14 @@
 namespace vkfv::specimen {
 namespace {
 
-// The grid of a generated specimen: points over the footprint, no further apart than pitch (but for the rounding of a
+// The grid of a generated specimen: points over the footprint, at most `pitch` apart (except for the rounding of a
 // quotient).
 class Lattice {
   public:
     Lattice(const Recipe& recipe, const std::optional<Roughness>& roughness, const SourceLocation& where)
         : size_(recipe.square.size), pitch_(recipe.square.pitch), where_(where),
           is_smooth_(recipe.function && !recipe.random && !roughness) {
-        // Fields finer than the facets would alias.
+        // The grid must be as fine as the roughness, which would alias otherwise.
         if (roughness && positive(roughness->pitch)) {
             const bool has_own_grid = recipe.random || recipe.representation == Representation::facets;
             pitch_ = has_own_grid && positive(pitch_) ? std::min(pitch_, roughness->pitch) : roughness->pitch;
@@ -27,9 +27,9 @@ class Lattice {
     }
 
     double pitch() const { return pitch_; }
-    const std::string& key() const { return key_; } // of the pitch
+    const std::string& key() const { return key_; } // key of the pitch in use
 
-    // Facets along a side.
+    // The number of facets along a side.
     int facets() const {
         require_um(positive(pitch_) && pitch_ <= size_, where_, key_, pitch_,
                    fmt::format("a positive length, at most the specimen's {} um", size_ * um_per_mm));
@@ -85,7 +85,7 @@ std::variant<HeightField, Mesh, Analytic> generate(const Recipe& recipe, const s
     const Lattice lattice(recipe, roughness, where);
     require(positive(size), where, "size_mm", size,
             fmt::format("a length from {:g} to {:g} mm", smallest_length, largest_length));
-    // Before any point is made.
+    // This check precedes the making of any point.
     if (recipe.random) {
         check_work_of_noise(size, size, size / lattice.facets(), 0.5 * recipe.random->correlation_length, where,
                             lattice.key());

@@ -1,4 +1,4 @@
-// Specimens made by a rule: how the parts that a kind states come together.
+// Generated specimens: combines the parts that a kind provides.
 #pragma once
 
 #include "specimen/random_heights.hpp"
@@ -11,22 +11,22 @@
 
 namespace vkfv::specimen {
 
-// Along a side of a generated surface: with one point more they fill the largest image of a common device.
+// The largest number of facets along a side: their points fill the largest image of a common device.
 inline constexpr int most_facets = 16383;
 
-// One of `function` and `raise`.
+// The parts of a generated specimen; either `function` or `raise` is set.
 struct Recipe {
     Square square;
     Representation representation = Representation::facets;
-    std::function<Analytic()> function{}; // over the footprint
-    // Sets the heights of a field that is level, at 0; asked_pitch: before it was adjusted to divide the size.
+    std::function<Analytic()> function{}; // function over the footprint
+    // Sets the heights of a field that is 0 everywhere; asked_pitch: mm, before it was adjusted to divide the size.
     std::function<void(HeightField&, double asked_pitch)> raise{};
-    std::optional<RandomHeights> random{}; // added to either
+    std::optional<RandomHeights> random{}; // added to the function or the raised heights
 };
 
-// Facets at the points of a grid over the footprint; or the function, with random heights and roughness as a lattice
-// added to it. The finer of the pitches of the square and of the roughness is used. Throws InputError where a value
-// does not fit.
+// Makes facets at the points of a grid over the footprint; or the function, with random heights and roughness as a
+// lattice added to it. The finer of the pitches of the square and of the roughness is used. Throws InputError for
+// invalid values.
 std::variant<HeightField, Mesh, Analytic> generate(const Recipe& recipe, const std::optional<Roughness>& roughness,
                                                    const SourceLocation& where);
 

@@ -28,7 +28,8 @@ std::string geometry_digest(const Specimen& specimen) {
             add_field(*analytic->lattice);
         }
     }
-    // Of the reflectance what a file or random numbers contribute; the rest are keys.
+    // The digest includes the reflectance map's values from files or random numbers; its other parameters are keys,
+    // which the identity contains already.
     if (specimen.reflectance && !specimen.reflectance->values.values.empty()) {
         const Grid<float>& values = specimen.reflectance->values;
         digest.add(fmt::format("reflectance {} {};", values.columns, values.rows));

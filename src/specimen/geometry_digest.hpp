@@ -1,4 +1,4 @@
-// A specimen's surface in one word.
+// The digest of a specimen's surface.
 #pragma once
 
 #include "specimen/specimen.hpp"
@@ -7,8 +7,8 @@
 
 namespace vkfv::specimen {
 
-// The surface as it was made, vertex by vertex, and the points of its reflectance: what an STL, a glTF with its buffers
-// or an image contributes to the identity of a stack.
+// The digest of the surface, vertex by vertex, and of the points of its reflectance. It brings the content of an STL,
+// of a glTF with its buffers or of an image into the identity of a stack.
 std::string geometry_digest(const Specimen& specimen);
 
 } // namespace vkfv::specimen

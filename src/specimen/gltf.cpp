@@ -26,10 +26,11 @@ using gltf::Document;
 using gltf::Elements;
 using gltf::Object;
 
-// Of the standard's modes of primitives.
-constexpr std::uint64_t mode_triangles = 4, mode_fan = 6; // between them strips, below them points and lines
+// Modes of primitives in the glTF standard.
+constexpr std::uint64_t mode_triangles = 4, mode_fan = 6; // strips lie between them, points and lines below
 
-// A few kilobytes may place one mesh a million times: more than this is a mistake (some gigabytes of memory).
+// A few kilobytes may place one mesh a million times: larger numbers are taken for a mistake (some gigabytes of
+// memory).
 constexpr std::uint64_t most_triangles = std::uint64_t{1} << 26, most_vertices = std::uint64_t{1} << 26;
 
 constexpr const char* instancing = "EXT_mesh_gpu_instancing";
@@ -40,7 +41,7 @@ const gltf::Wanted wanted_indices{
     .components = {Component::unsigned_byte, Component::unsigned_short, Component::unsigned_int},
     .interleaved = false};
 
-// Floats or normalised integers.
+// Instance attributes are floats or normalised integers.
 gltf::Wanted wanted_of_instances(std::string purpose, std::string type) {
     return {.purpose = std::move(purpose),
             .type = std::move(type),
@@ -59,9 +60,9 @@ glm::dmat4 placed(const glm::dvec3& translation, const glm::dquat& rotation, con
     return matrix;
 }
 
-// Rotations are unit quaternions but for rounding; of any other length they may mean anything.
+// A rotation is a unit quaternion except for rounding; other lengths are refused, as their meaning is undefined.
 std::optional<glm::dquat> rotation_of(double x, double y, double z, double w) {
-    constexpr double rounding = 0.02; // of normalised bytes
+    constexpr double rounding = 0.02; // error of normalised bytes
     const glm::dquat rotation(w, x, y, z);
     const double length = glm::length(rotation);
     return std::abs(length - 1) <= rounding ? std::optional(rotation / length) : std::nullopt;
@@ -104,7 +105,7 @@ class Reader {
     struct Size {
         std::uint64_t triangles = 0, vertices = 0;
     };
-    // A mesh and where a node places it.
+    // A mesh at the place that a node gives it.
     struct Placement {
         std::uint64_t mesh;
         std::uint64_t node;
@@ -113,7 +114,7 @@ class Reader {
 
     Object node_at(std::uint64_t index) const { return document_.item("nodes", "node", index); }
 
-    // Of the default scene, else of the first one; without scenes every node that is nobody's child.
+    // The root nodes of the default scene, else of the first one; without scenes all nodes without a parent.
     std::vector<std::uint64_t> roots() const {
         const auto scene = document_.root().integer("scene");
         if (const std::size_t scenes = document_.count("scenes"); scenes > 0 || scene) {
@@ -139,7 +140,7 @@ class Reader {
         return result;
     }
 
-    // With a stack of its own: a chain of nodes may be as long as the file.
+    // Walks a tree of nodes with an explicit stack, as a chain of nodes may be as long as the file.
     void walk_tree(std::uint64_t root) {
         struct Task {
             std::uint64_t node;
@@ -169,7 +170,7 @@ class Reader {
     static glm::dmat4 transform_of(const Object& node) {
         const auto matrix = node.numbers("matrix", 16);
         const auto translation = node.numbers("translation", 3);
-        const auto rotation = node.numbers("rotation", 4); // x, y, z, w
+        const auto rotation = node.numbers("rotation", 4); // order: x, y, z, w
         const auto scale = node.numbers("scale", 3);
         if (!matrix.empty()) {
             if (!translation.empty() || !rotation.empty() || !scale.empty()) {
@@ -195,7 +196,7 @@ class Reader {
                       scale.empty() ? glm::dvec3(1) : glm::make_vec3(scale.data()));
     }
 
-    // Before anything is made of it: all that is to come has to fit into memory.
+    // Counts triangles and vertices before any is made, so that a mesh too large for memory is refused.
     void count(std::uint64_t mesh, const Object& node) {
         if (node.has("skin")) {
             node.fail("skin", fmt::format("{}", node.integer("skin").value_or(0)), "a mesh that no skeleton bends",
@@ -248,7 +249,8 @@ class Reader {
         }
     }
 
-    // Transforms of a node's mesh before the node's own: a single one that does nothing without the extension.
+    // The transforms of a node's mesh that precede the node's own: the identity alone, unless the extension states
+    // instances.
     std::vector<glm::dmat4> instances_of(const Object& node) const {
         const auto extensions = node.object("extensions");
         const auto extension = extensions ? extensions->object(instancing) : std::nullopt;
@@ -301,7 +303,7 @@ class Reader {
         return result;
     }
 
-    // Positions are floats, but for an extension that packs them.
+    // Positions are floats, unless an extension packs them.
     gltf::Wanted wanted_positions() const {
         gltf::Wanted wanted{.purpose = "positions of three floats", .type = "VEC3", .components = {Component::real}};
         if (document_.uses("KHR_mesh_quantization")) {
@@ -317,7 +319,7 @@ class Reader {
         Elements displacements;
     };
 
-    // The targets that displace positions, with their weights.
+    // The morph targets that displace positions, with their weights.
     std::vector<Morph> morphs_of(const Object& primitive, const std::vector<double>& weights,
                                  std::uint64_t points) const {
         std::vector<Morph> result;
@@ -357,7 +359,7 @@ class Reader {
         }
     }
 
-    // A primitive of triangles.
+    // A primitive that consists of triangles.
     struct Shape {
         std::uint64_t mode;
         Elements points;
@@ -366,7 +368,7 @@ class Reader {
         std::uint64_t count() const { return indices ? indices->count() : points.count(); }
     };
 
-    // Nothing for points and lines, and for what has no positions.
+    // The primitive as triangles; none for points and lines, and for primitives without positions.
     std::optional<Shape> shape_of(const Object& primitive) {
         const std::uint64_t mode = primitive.integer("mode").value_or(mode_triangles);
         if (mode > mode_fan) {
@@ -405,8 +407,7 @@ class Reader {
             }
             return static_cast<std::uint32_t>(base + index);
         };
-        // A mirroring transform turns the sense of the triangles round; a strip's every second one is turned
-        // already.
+        // A mirroring transform reverses the orientation of triangles; every second one of a strip is reversed already.
         const bool mirrored = glm::determinant(glm::dmat3(to_scene)) < 0;
         const auto add = [&](std::uint64_t a, std::uint64_t b, std::uint64_t c, bool turned) {
             mesh_.triangles.emplace_back(vertex(a), vertex(turned != mirrored ? c : b),
@@ -426,11 +427,11 @@ class Reader {
 
     const Document& document_;
     FileMesh mesh_;
-    std::vector<bool> visited_; // nodes
+    std::vector<bool> visited_; // by node
     std::vector<Placement> placements_;
-    std::map<std::uint64_t, Size> sizes_;             // of meshes
-    Size size_;                                       // of all placements
-    std::set<std::string> lines_, without_positions_; // primitives that are left out
+    std::map<std::uint64_t, Size> sizes_;             // by mesh
+    Size size_;                                       // total of all placements
+    std::set<std::string> lines_, without_positions_; // names of primitives that are left out
 };
 
 } // namespace

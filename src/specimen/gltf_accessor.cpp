@@ -12,9 +12,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "buffers are little-endian, and so is the memory");
 
-// Without a buffer nothing bounds what an accessor may ask for.
+// The limit for accessors without a buffer, whose size nothing else bounds.
 constexpr std::uint64_t most_elements_without_buffer = 1u << 24;
-constexpr std::uint64_t least_stride = 4, largest_stride = 252; // of the standard
+constexpr std::uint64_t least_stride = 4, largest_stride = 252; // limits of the glTF standard
 
 std::uint64_t bytes_of(Component component) {
     switch (component) {
@@ -38,7 +38,7 @@ double value_at(const char* place, bool normalised) {
     Value value;
     std::memcpy(&value, place, sizeof value);
     const double number = static_cast<double>(value);
-    // The most negative integer stands for -1 too.
+    // The most negative integer stands for -1 too, so the quotient is limited.
     return normalised ? std::max(number / static_cast<double>(std::numeric_limits<Value>::max()), -1.0) : number;
 }
 
@@ -82,7 +82,7 @@ Elements::Packed Elements::packed(const Document& document, const Object& owner,
         view.fail("byteStride", fmt::format("{}", stride), "elements without gaps, as indices have to be");
     }
     const std::uint64_t length = buffer.bytes.size();
-    // Every sum and product below is bounded by the one before, so none can wrap round.
+    // Every sum and product below is bounded by the check before it, so none can overflow.
     const bool fits = view_offset <= length && view_length <= length - view_offset && offset <= view_length &&
                       count > 0 && element_bytes <= view_length - offset &&
                       count - 1 <= (view_length - offset - element_bytes) / stride;

@@ -1,4 +1,4 @@
-// The numbers that an accessor of a glTF file stands for.
+// The numbers of an accessor of a glTF file.
 #pragma once
 
 #include "specimen/gltf_document.hpp"
@@ -9,7 +9,7 @@
 
 namespace vkfv::specimen::gltf {
 
-// Numbers of the standard.
+// Component types with the glTF standard's values.
 enum class Component : std::uint64_t {
     signed_byte = 5120,
     unsigned_byte = 5121,
@@ -19,33 +19,33 @@ enum class Component : std::uint64_t {
     real = 5126
 };
 
-// What an accessor must be to serve a purpose.
+// The requirements on an accessor for one purpose.
 struct Wanted {
-    std::string purpose;               // "positions of three floats"
-    std::string type;                  // "VEC3"
-    std::vector<Component> components; // any of these
-    bool normalised_only = false;      // integers must be fractions of the largest
-    bool interleaved = true;           // whether a buffer view may state a stride, as for attributes of vertices
+    std::string purpose;               // text for messages: "positions of three floats"
+    std::string type;                  // type in the file: "VEC3"
+    std::vector<Component> components; // accepted component types
+    bool normalised_only = false;      // true: integers must be normalised
+    bool interleaved = true;           // true: the buffer view may state a stride, as for vertex attributes
 };
 
-// Checked against the buffers that they lie in before the first is read.
+// The elements of an accessor. The constructor checks that they lie within their buffers.
 class Elements {
   public:
-    // Throws InputError.
+    // Throws InputError for an accessor that is invalid or not as wanted.
     Elements(const Document& document, std::uint64_t accessor, const Wanted& wanted);
 
     std::uint64_t count() const { return count_; }
-    const std::string& name() const { return name_; } // "accessor 7"
+    const std::string& name() const { return name_; } // for example "accessor 7"
     Component component() const { return dense_.component; }
 
-    // Normalised integers in [0, 1] or [-1, 1], others as they are.
+    // The value of a component; normalised integers become [0, 1] or [-1, 1], others are unchanged.
     double at(std::uint64_t element, std::uint64_t component) const;
-    // Where the element lies, for messages.
+    // The place of an element in its file, for messages.
     SourceLocation where(std::uint64_t element) const;
 
   private:
     struct Packed {
-        const char* first = nullptr; // null: all are zero
+        const char* first = nullptr; // null: all elements are zero
         std::uint64_t stride = 0;
         Component component = Component::real;
         bool normalised = false;
@@ -61,7 +61,7 @@ class Elements {
     std::string name_;
     std::uint64_t count_ = 0;
     Packed dense_;
-    std::vector<std::uint64_t> replaced_; // ascending: elements that stand in `replacements_`
+    std::vector<std::uint64_t> replaced_; // ascending indices of the elements in `replacements_`
     Packed replacements_;
 };
 

@@ -16,14 +16,14 @@
 namespace vkfv::specimen::gltf {
 namespace {
 
-// Chunks of the binary container.
+// Constants of the binary container and its chunks.
 constexpr std::string_view binary_magic = "glTF";
 constexpr std::uint64_t header_bytes = 12, chunk_header_bytes = 8;
 constexpr std::uint32_t container_version = 2, json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
-// They say how a surface looks or what it is called, never where it is: the triangles are the same without them.
+// Extensions about appearance and names, never about geometry: the triangles are the same without them.
 constexpr std::array of_appearance = {"KHR_lights_punctual",
                                       "KHR_texture_basisu",
                                       "KHR_texture_transform",
@@ -74,7 +74,7 @@ struct Version {
     int major = 0, minor = 0;
 };
 
-// "2.0"
+// Parses a version such as "2.0".
 std::optional<Version> version_of(const std::string& text) {
     Version version;
     const char* end = text.data() + text.size();
@@ -156,7 +156,7 @@ void Document::parse(std::string_view text) {
             where.column = place.column;
         }
         reason = byte >= text.size() ? "the end of the JSON text" : "no valid JSON from here on";
-    } catch (const Json::exception& error) { // a number that no double holds
+    } catch (const Json::exception& error) { // a number beyond double's range
         reason = error.what();
     }
     if (!json_.is_object()) {
@@ -185,7 +185,7 @@ void Document::check_version() const {
     if (!version) {
         asset.fail("version", "nothing", "the version of glTF, \"2.0\"", remedy);
     }
-    // What asks for no least version can be read by all readers of its major one.
+    // A file without minVersion can be read by all readers of its major version.
     if (least && (least->major != 2 || least->minor != 0)) {
         asset.fail("minVersion", fmt::format("{}.{}", least->major, least->minor),
                    "glTF 2.0, which is all that is known here", remedy);
@@ -251,10 +251,10 @@ const Buffer& Document::buffer(std::uint64_t index) const {
 
 namespace {
 
-// A few kilobytes may name one file many times.
+// A limit is needed because a few kilobytes may name one file many times.
 constexpr std::uint64_t most_buffer_bytes = std::uint64_t{1} << 32;
 
-// The file of a buffer, as tinygltf asks for it.
+// The request for a buffer's file, which tinygltf passes to read_buffer_file().
 struct BufferFile {
     FileRequest request;
     std::uint64_t length;
@@ -262,7 +262,7 @@ struct BufferFile {
     std::optional<InputError> failure{};
 };
 
-// `user` is a BufferFile.
+// Reads a buffer's file for tinygltf; `user` points to a BufferFile.
 bool read_buffer_file(std::vector<unsigned char>* bytes, std::string*, const std::string& path, void* user) {
     auto& file = *static_cast<BufferFile*>(user);
     try {
@@ -286,7 +286,7 @@ bool read_buffer_file(std::vector<unsigned char>* bytes, std::string*, const std
 
 tinygltf::FsCallbacks callbacks_for(BufferFile& file) {
     tinygltf::FsCallbacks callbacks{};
-    callbacks.FileExists = [](const std::string&, void*) { return true; }; // reading finds it out, and says why
+    callbacks.FileExists = [](const std::string&, void*) { return true; }; // a missing file is reported when it is read
     callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
     callbacks.ReadWholeFile = read_buffer_file;
     callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
@@ -316,7 +316,7 @@ void Document::load(std::uint64_t index, Buffer& buffer, std::vector<unsigned ch
         buffer.offset = static_cast<std::uint64_t>(binary_chunk_.data() - bytes_.data());
         return;
     }
-    // Files beside the document alone: others mean nothing on another machine, and no network is asked.
+    // Only files beside the document are read: others mean nothing on another machine, and no network is used.
     if (!is_data_uri(*uri) && !is_relative_path(*uri)) {
         description.fail("uri", '"' + uri->substr(0, 80) + '"', "a relative path or a data URI",
                          "Put the buffer beside the glTF file, or export as .glb.");
@@ -330,7 +330,7 @@ void Document::load(std::uint64_t index, Buffer& buffer, std::vector<unsigned ch
                                 .expected = "the file of a buffer",
                                 .remedy = "Put the file beside the glTF file that names it, or export as .glb."},
                     .length = length};
-    // By itself, so that nothing else of the document is read or refused.
+    // The buffer is loaded in a document of its own, so that tinygltf reads or refuses nothing else.
     const std::string text =
         Json{{"asset", {{"version", "2.0"}}}, {"buffers", Json::array({json_["buffers"][index]})}}.dump();
     tinygltf::TinyGLTF loader;

@@ -1,6 +1,6 @@
-// What a glTF 2.0 file says, asked for value by value: tinygltf reads the buffers, but takes what is of a wrong
-// kind elsewhere for something left out. Every getter checks type and range, so that nothing of a wrong kind
-// passes for something left out: what is wrong becomes an InputError that names the value ("node 3.matrix").
+// Access to a glTF 2.0 file value by value: tinygltf reads only the buffers, because elsewhere it treats a value of a
+// wrong type as missing. Every getter checks type and range; a wrong value is an InputError that names it ("node
+// 3.matrix").
 #pragma once
 
 #include "core/messages/error.hpp"
@@ -19,7 +19,7 @@ namespace vkfv::specimen::gltf {
 
 using Json = nlohmann::json;
 
-// A JSON object of the document, and its name in messages. Refers to the document, which outlives it.
+// A JSON object of the document with its name for messages. It refers to the document, which must outlive it.
 class Object {
   public:
     Object(const Json& value, std::string name, const std::filesystem::path& file);
@@ -27,22 +27,22 @@ class Object {
     const std::string& name() const { return name_; }
     bool has(const char* key) const { return value_->contains(key); }
 
-    // Getters of values that may be missing.
-    std::optional<std::uint64_t> integer(const char* key) const; // not negative, below 2^53; 3.0 is one too
-    bool boolean(const char* key) const;                         // false without
-    const std::string* string(const char* key) const;            // null without
+    // Getters of optional values.
+    std::optional<std::uint64_t> integer(const char* key) const; // none if missing; >= 0, below 2^53; 3.0 counts too
+    bool boolean(const char* key) const;                         // false if missing
+    const std::string* string(const char* key) const;            // null if missing
     std::vector<std::string> strings(const char* key) const;
-    std::vector<double> numbers(const char* key) const;                    // finite
-    std::vector<double> numbers(const char* key, std::size_t count) const; // either none or as many
+    std::vector<double> numbers(const char* key) const;                    // finite numbers
+    std::vector<double> numbers(const char* key, std::size_t count) const; // either empty or of size `count`
     std::vector<std::uint64_t> integers(const char* key) const;
     std::optional<Object> object(const char* key) const;
     std::vector<Object> objects(const char* key) const;
 
-    // Those that must be there.
+    // Getters of required values.
     std::uint64_t needed_integer(const char* key) const;
     Object needed_object(const char* key) const;
 
-    // Throws.
+    // Throws an InputError about the value of `key`.
     [[noreturn]] void fail(const std::string& key, const std::string& found, const std::string& expected,
                            const std::string& remedy = "Export the file anew; it is damaged or unusual.",
                            std::optional<SourceLocation> where = {}) const;
@@ -57,16 +57,16 @@ class Object {
     const std::filesystem::path* file_;
 };
 
-// A buffer's bytes, and where they lie, for messages.
+// The bytes of a buffer, and their place in a file for messages.
 struct Buffer {
     std::string_view bytes;
     std::filesystem::path file;
-    std::optional<std::uint64_t> offset; // in that file; none: in a data URI
+    std::optional<std::uint64_t> offset; // byte offset in `file`; none: a data URI
 };
 
 class Document {
   public:
-    // Of a .gltf's text or of a whole .glb. Checks the container, the version and the required extensions. Throws
+    // Parses a .gltf's text or a whole .glb; checks the container, the version and the required extensions. Throws
     // InputError.
     Document(std::string bytes, std::filesystem::path file);
     Document(const Document&) = delete;
@@ -74,14 +74,15 @@ class Document {
 
     const std::filesystem::path& file() const { return file_; }
     Object root() const;
-    bool uses(std::string_view extension) const; // declared as used or required
+    bool uses(std::string_view extension) const; // true if declared as used or required
 
-    // The index-th of a list of the root ("nodes"), called `name` ("node 3"). Throws InputError beyond the list's end.
+    // An element of a root list such as "nodes", with `name` for messages ("node 3"). Throws InputError if the index
+    // exceeds the list.
     std::size_t count(const char* list) const;
     Object item(const char* list, const std::string& name, std::uint64_t index) const;
 
-    // Of a regular file beside the document, of a data URI or of the .glb; read when it is first asked for, so that
-    // what no triangle needs need not exist. As long as its byteLength, or InputError.
+    // The content of a buffer from a regular file beside the document, a data URI or the .glb. It is read at the first
+    // call, so that buffers that no triangle needs may be missing. Its length is its byteLength, else InputError.
     const Buffer& buffer(std::uint64_t index) const;
 
   private:
@@ -95,14 +96,14 @@ class Document {
     std::filesystem::path file_;
     Json json_;
     std::string_view binary_chunk_;
-    std::optional<std::uint64_t> json_start_; // in a .glb
+    std::optional<std::uint64_t> json_start_; // byte offset of the JSON in a .glb
     std::vector<std::string> extensions_;
     struct Loaded {
         Buffer buffer;
-        std::vector<unsigned char> owned; // what it views, unless that is in the .glb
+        std::vector<unsigned char> owned; // storage of the buffer, unless it is in the .glb
     };
     mutable std::map<std::uint64_t, Loaded> buffers_;
-    mutable std::uint64_t loaded_bytes_ = 0; // beside the .glb's
+    mutable std::uint64_t loaded_bytes_ = 0; // without the .glb itself
 };
 
 } // namespace vkfv::specimen::gltf

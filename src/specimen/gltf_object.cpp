@@ -7,9 +7,9 @@
 namespace vkfv::specimen::gltf {
 namespace {
 
-constexpr double largest_integer = 9007199254740992.0; // 2^53: up to there every integer is a double
+constexpr double largest_integer = 9007199254740992.0; // 2^53: all integers up to it are doubles
 
-// A value as it stands in the file, as far as it fits into a message.
+// A value as in the file, shortened to fit into a message.
 std::string shown(const Json& value) {
     if (value.is_structured()) {
         return fmt::format("{} of {}", value.is_array() ? "an array" : "an object", value.size());

@@ -16,13 +16,13 @@ using physics::f64::Hit;
 using physics::f64::SpecimenRecord;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Margin of every interval that only selects what is then tested: far above the rounding of a few operations,
-// far below any pitch.
+// The margin of intervals that only preselect candidates: far above the rounding of a few operations, far below any
+// pitch.
 constexpr double selection_margin = 1e-12;
 
-// S. Woop, C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2 (2013) 1: in coordinates
-// sheared so that the ray is the third axis, the edge functions of neighbours have exactly opposite values on
-// their common edge, and zero counts as inside; no ray passes between two triangles.
+// A ray with the triangle test of S. Woop, C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2, 1
+// (2013): in coordinates sheared so that the ray is the third axis, the edge functions of neighbours have exactly
+// opposite values on their common edge, and zero counts as inside; no ray passes between two triangles.
 class Ray {
   public:
     Ray(const glm::dvec3& origin, const glm::dvec3& direction) : origin_(origin), direction_(direction) {
@@ -33,7 +33,7 @@ class Ray {
         shear_ = glm::dvec3(direction[x_], direction[y_], 1.0) / direction[z_];
     }
 
-    // Distance to the triangle, if it is > 0.
+    // The distance to the triangle; none unless it is > 0.
     std::optional<double> meet(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) const {
         const glm::dvec3 pa = shear(a);
         const glm::dvec3 pb = shear(b);
@@ -45,7 +45,7 @@ class Ray {
             return std::nullopt;
         }
         const double sum = u + v + w;
-        if (sum == 0) { // seen edge-on
+        if (sum == 0) { // the ray lies in the triangle's plane
             return std::nullopt;
         }
         const double distance = (u * pa.z + v * pb.z + w * pc.z) / sum;
@@ -72,7 +72,7 @@ struct Interval {
     double stop = infinity;
     bool empty() const { return !(start <= stop); }
 
-    // Cuts to lower <= coordinate <= upper.
+    // Clips the interval of distances to lower <= coordinate <= upper.
     void clip(double origin, double direction, double lower, double upper) {
         if (direction == 0) {
             if (origin < lower || origin > upper) {
@@ -116,8 +116,8 @@ class FieldWalk {
         if (inside.empty()) {
             return nearest;
         }
-        // Strip by strip along the axis that the ray covers faster, and in each strip the few cells it
-        // crosses, each taken a margin wider than it is.
+        // The walk goes strip by strip along the axis that the ray covers faster; in each strip it tests the few cells
+        // that the ray crosses, each enlarged by a margin.
         const bool by_columns = std::abs(direction.x) >= std::abs(direction.y);
         const int main = by_columns ? 0 : 1;
         const int cells_main = (by_columns ? field_.heights.columns : field_.heights.rows) - 1;

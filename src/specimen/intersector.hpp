@@ -1,4 +1,4 @@
-// The host's own way of meeting a specimen with a ray, in double: the reference for every traversal on a device.
+// The host's intersection of a ray with a specimen, in double: the reference for every traversal on a device.
 #pragma once
 
 #include "specimen/specimen.hpp"
@@ -7,19 +7,19 @@
 
 namespace vkfv::specimen {
 
-// Shares no code with the device's traversals: a cell-by-cell walk for height fields, a median-split hierarchy for
-// meshes, marching for analytic surfaces (through the shared height function). Immutable; safe from any thread.
+// Shares no code with the device's traversals: it walks height fields cell by cell, meshes by a median-split hierarchy,
+// and analytic surfaces by marching (through the shared height function). Immutable; safe from any thread.
 class Intersector {
   public:
     explicit Intersector(const Specimen& specimen);
     ~Intersector();
     Intersector(Intersector&&) noexcept;
 
-    // Nearest meeting at a distance > 0 (mm for a unit direction); specimen frame.
+    // The nearest hit at a distance > 0 (mm for a unit direction), in the specimen frame.
     physics::f64::Hit hit(glm::dvec3 origin, glm::dvec3 direction) const;
 
-    // What the shared physics asks of the specimen besides: FEATURE_REFLECTANCE_MAP if it has one, and its grid;
-    // FEATURE_SPECTRAL_MATERIAL if the wavelength changes its material, and that material's numbers.
+    // The specimen's part of the scene that the shared physics requires: FEATURE_REFLECTANCE_MAP with the map's grid if
+    // there is one; FEATURE_SPECTRAL_MATERIAL with the material's numbers if it depends on the wavelength.
     std::uint32_t features() const;
     double reflectance_at(int column, int row) const;
     double material_number(int index) const;

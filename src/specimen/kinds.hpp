@@ -1,16 +1,16 @@
 // The kinds of specimens, one file each in specimen/kinds/, which the build finds (kinds.cmake). A kind is a struct
 // named after its file, an aggregate that compares its members, with
-//   name, meaning               as the configuration has it, and a sentence
-//   keys()                      those of [specimen] that it has, besides `kind`
-//   read(section)               itself, by these keys, in the order in which they are to be written
-// and of these members the one that makes it, which throws InputError where a value does not fit:
-//   Analytic function(where)    over a square (Continuous): facets too
+//   name, meaning               the value of `kind` in the configuration, and a sentence
+//   keys()                      the kind's keys of [specimen], besides `kind`
+//   read(section)               the shape by these keys, in the order in which they are to be written
+// and with the one of these members that makes it, which throws InputError for invalid values:
+//   Analytic function(where)    a function over a square (Continuous), also for facets
 //   raise(field, pitch, where)  heights on the level field of a square (Square)
-//   HeightField heights(where)  of a file
-//   Mesh mesh(where)            of a file; takes no roughness
-// and random_heights(), if it has some, and feature(), what is measured on it, if it is a standard. where: of the
-// [specimen] table, or of its `file`. A line "// place: 3" says where the kind comes among the others; without one it
-// comes last.
+//   HeightField heights(where)  heights from a file
+//   Mesh mesh(where)            a mesh from a file; it takes no roughness
+// Further members are random_heights(), if the kind has some, and feature(), the feature to be measured, if it is a
+// measurement standard. where: place of the [specimen] table, or of its `file`. A line "// place: 3" states the kind's
+// place among the others; without one it comes last.
 #pragma once
 
 #include "specimen/shape.hpp"
@@ -44,7 +44,7 @@ concept MeshKind = requires(const Kind& kind, const SourceLocation& where) {
     { kind.mesh(where) } -> std::same_as<Mesh>;
 };
 
-// What is said of a kind.
+// The description of a kind.
 struct Kind {
     std::string name;
     std::string meaning;
@@ -53,24 +53,24 @@ struct Kind {
     bool takes_roughness;
 };
 
-// In the order of Shape's alternatives.
+// All kinds, in the order of Shape's alternatives.
 const std::vector<Kind>& kinds();
 
-// The file that it is of; empty: none.
+// The file of a shape; empty if it has none.
 std::filesystem::path file_of(const Shape& shape);
 
-// Side of the square that it covers or takes of its file, mm; 0: it has none.
+// Side (mm) of the square that a shape covers or takes from its file; 0 if it has none.
 double size_of(const Shape& shape);
 
-// What is measured on it; none of kinds that are no standards.
+// The feature to be measured on a shape; none unless it is a measurement standard.
 std::optional<dimensions::Feature> feature_of(const Shape& shape);
 
-// What is removed from its heights before they are compared with the true ones, unless the user says otherwise: of a
-// standard with steps, waves or a sphere nothing but the plane of the deviation ("truth"), since a plane through a step
-// takes a part of it, and through a broken number of waves too; of all others the least-squares plane.
+// The form that is removed from measured heights before their comparison with the true ones, unless the user chooses
+// another: for a standard with steps, waves or a sphere only the plane of the deviation ("truth"), as a plane through a
+// step, or through a fractional number of waves, would remove a part of it; for all others the least-squares plane.
 surface::Form usual_form(const Shape& shape);
 
-// The same with another pitch, mm, if it has one.
+// The shape with another pitch (mm), if it has a pitch.
 Shape with_pitch(Shape shape, double pitch);
 
 } // namespace vkfv::specimen

@@ -1,4 +1,4 @@
-// Which lengths a specimen may have, and the refusal of values that do not fit.
+// The range of lengths for specimens, and the refusal of invalid values.
 #pragma once
 
 #include "core/mathematics/units.hpp"
@@ -8,21 +8,21 @@
 
 namespace vkfv::specimen {
 
-// What is shorter or longer, mm, is no specimen of a microscope, and its squares leave the numbers of a device: 0.1 pm,
-// a kilometre.
+// The range of lengths in mm, from 0.1 pm to a kilometre: others are no specimen of a microscope, and their squares
+// exceed the range of a device's floats.
 inline constexpr double smallest_length = 1e-10, largest_length = 1e6;
 
-// Within them; never NaN.
+// True for a length in this range; false for NaN.
 constexpr bool positive(double mm) {
     return mm >= smallest_length && mm <= largest_length;
 }
-// The same in words.
+// The condition of positive() in words, for messages.
 std::string positive_um();
 
-// Throws InputError for the key of [specimen] ("radius_um") where the condition does not hold. where: of the table.
+// Throws InputError for a key of [specimen] ("radius_um") unless the condition holds. where: place of the table.
 void require(bool condition, const SourceLocation& where, const std::string& key, double found,
              const std::string& expected);
-// The same of a length in mm under a key in um.
+// Throws InputError like require(), for a length in mm under a key in um.
 void require_um(bool condition, const SourceLocation& where, const std::string& key, double mm,
                 const std::string& expected);
 

@@ -14,13 +14,13 @@ namespace {
 using physics::f64::SpecimenRecord;
 using Geometry = decltype(Specimen::geometry);
 
-// A surface that floats can hold, on the device too.
+// Refuses a surface that floats cannot hold, as a device needs them.
 void check_extent(const Specimen& specimen, const SourceLocation& where) {
     const SpecimenRecord r = record_of_geometry(specimen);
     const double farthest = std::max({std::abs(r.x_min), std::abs(r.x_max), std::abs(r.y_min), std::abs(r.y_max),
                                       std::abs(r.bottom), std::abs(r.top)});
     const double narrowest = std::min(r.x_max - r.x_min, r.y_max - r.y_min);
-    // Not finite: neither.
+    // The negated conditions also refuse NaN.
     if (!(farthest <= largest_length && narrowest >= smallest_length)) {
         throw InputError({where, "specimen",
                           fmt::format("a surface of {:.6g} x {:.6g} mm, from {:.6g} to {:.6g} mm high",
@@ -49,7 +49,7 @@ Geometry generated(const OneKind& kind, const Description& d) {
 HeightField with_roughness(HeightField field, const Description& d) {
     if (d.roughness) {
         check_roughness(field.x_max() - field.x_min, field.y_max() - field.y_min, *d.roughness, d.where);
-        // Roughness finer than the points of the file needs points in between.
+        // Roughness finer than the file's grid needs more points in between.
         if (d.roughness->pitch > 0 && d.roughness->pitch < std::max(field.pitch_x, field.pitch_y) * (1 - 1e-9)) {
             field = refined(field, d.roughness->pitch, d.where);
         }

@@ -15,7 +15,7 @@ namespace {
 
 using physics::scatter_registry;
 
-// Without its tables.
+// The record of a lobe, without its tables.
 physics::f64::Lobe lobe_record(const Lobe& lobe, const SourceLocation& where) {
     const auto model = std::ranges::find(scatter_registry, lobe.model, &physics::ScatterModel::name);
     if (model == scatter_registry.end() || model->parameters.size() != lobe.parameters.size()) {
@@ -54,7 +54,7 @@ physics::f64::Lobe lobe_record(const Lobe& lobe, const SourceLocation& where) {
     return result;
 }
 
-// Likewise.
+// The records of all lobes, without their tables.
 std::array<physics::f64::Lobe, most_lobes> lobe_records(const Material& material, const SourceLocation& where) {
     if (material.lobes.size() > most_lobes) {
         throw InputError({where, "specimen.material.lobe", fmt::format("{} lobes", material.lobes.size()),
@@ -73,7 +73,7 @@ std::array<physics::f64::Lobe, most_lobes> lobe_records(const Material& material
     return lobes;
 }
 
-// All wavelengths at which a function of the material has a point; one alone is doubled, as two are needed.
+// All wavelengths at which a function of the material has a point; a single one is doubled, as interpolation needs two.
 std::vector<double> spectral_points(const Material& material) {
     std::vector<double> wavelengths;
     for (const Lobe& lobe : material.lobes) {
@@ -89,7 +89,7 @@ std::vector<double> spectral_points(const Material& material) {
     return wavelengths;
 }
 
-// Appends a point of the spectrum in the order that shaders/physics/reflectance.glsl reads.
+// Appends a point of the spectrum in the layout that shaders/physics/reflectance.glsl reads.
 void add_spectral_point(const Material& material, double wavelength_um, std::vector<float>& numbers) {
     numbers.push_back(static_cast<float>(wavelength_um));
     for (std::size_t k = 0; k < most_lobes; ++k) {
@@ -102,7 +102,7 @@ void add_spectral_point(const Material& material, double wavelength_um, std::vec
             if (!lobe.refractive_index.values.empty()) {
                 values[1] = lobe.refractive_index.at(wavelength_um);
                 values[2] = lobe.extinction_coefficient.at(wavelength_um);
-            } else if (lobe.parameters.size() >= 2) { // of models without an index they are not read
+            } else if (lobe.parameters.size() >= 2) { // models without an index ignore them
                 values[1] = lobe.parameters[0];
                 values[2] = lobe.parameters[1];
             }

@@ -37,7 +37,8 @@ double median_of(std::vector<double> values) {
     return *middle;
 }
 
-// Mean of the uppermost surface over the points of the bounding rectangle where there is one.
+// The mean height of the uppermost surface over points of the bounding rectangle; points without a surface are left
+// out.
 double mean_height(const Mesh& mesh) {
     constexpr int pixels = 256;
     const Box box = box_of({mesh.vertices.begin(), mesh.vertices.end()});
@@ -60,11 +61,11 @@ std::string text_of(const glm::dvec3& point) {
     return fmt::format("({:.6g}, {:.6g}, {:.6g}) mm", point.x, point.y, point.z);
 }
 
-// The vertex that lies farthest from where most of them are, and how far that is.
+// The vertex farthest from most others, and its distance.
 struct Outlier {
     glm::dvec3 vertex;
-    double distance = 0; // from the medians of the coordinates
-    double usual = 0;    // median of these distances
+    double distance = 0; // from the medians of the coordinates, largest component
+    double usual = 0;    // median of the distances of all vertices
 };
 
 Outlier outlier_of(const std::vector<glm::dvec3>& vertices) {
@@ -80,7 +81,7 @@ Outlier outlier_of(const std::vector<glm::dvec3>& vertices) {
     return {vertices[static_cast<std::size_t>(farthest - values.begin())], *farthest, median_of(values)};
 }
 
-// Twice the area, which no coordinate below largest_length makes overflow.
+// Twice the area; coordinates below largest_length cannot make it overflow.
 double area_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return glm::length(glm::cross(b - a, c - a));
 }
@@ -144,7 +145,7 @@ class Placing {
             fail("file", fmt::format("a mesh of {:.6g} x {:.6g} mm", extent.x, extent.y), "a footprint in x and y",
                  "Turn the mesh so that its face looks towards +z, or correct specimen.unit.");
         }
-        // Of all shapes that are meant to be seen whole, none is so lopsided.
+        // No shape that is meant to be seen whole is so lopsided.
         constexpr double far = 1e4;
         if (outlier.distance > far * outlier.usual) {
             warn("a vertex at {} lies {:.3g} mm from where most of the {} vertices are, half of them within {:.3g} mm. "
@@ -161,10 +162,10 @@ class Placing {
         }
     }
 
-    // Facets without area are met by no ray. Those of the file are dropped; those that only lose it among large
-    // coordinates are what the file was to show.
+    // Keeps the facets that have an area, as no ray meets others. Facets flat in the file are dropped; those that only
+    // rounding to float flattens are counted, as they belong to the surface.
     void keep_facets_with_area(const glm::dvec3& centre, const Outlier& outlier) {
-        constexpr double thinnest = 1e-9; // beside the square of its length: rounding of what is a line in the file
+        constexpr double thinnest = 1e-9; // relative to the squared length: rounding of a line in the file
         std::vector<double> sides;
         for (const glm::uvec3& triangle : source_.triangles) {
             const glm::dvec3 a = source_.vertices[triangle.x], b = source_.vertices[triangle.y],
@@ -200,7 +201,8 @@ class Placing {
             farthest = std::max(farthest, largest_of(glm::dvec3(vertex)));
         }
         const double step = farthest * static_cast<double>(std::numeric_limits<float>::epsilon());
-        // Of a facet's side: below a few steps its shape is lost, below some tens its slope shows it.
+        // Limits in units of rounding per facet side: below a few steps the facet's shape is lost, below some tens its
+        // slope is visibly wrong.
         constexpr double fewest_steps = 4, fine_steps = 64;
         const std::size_t whole = mesh_.triangles.size();
         if (2 * lost_ > whole || side < fewest_steps * step) {
@@ -226,8 +228,8 @@ class Placing {
     const MeshFile& description_;
     const SourceLocation& mention_;
     Mesh mesh_;
-    std::size_t flat_ = 0; // in the file
-    std::size_t lost_ = 0; // by rounding to float
+    std::size_t flat_ = 0; // flat in the file
+    std::size_t lost_ = 0; // flattened by rounding to float
 };
 
 } // namespace

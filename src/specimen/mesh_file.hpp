@@ -1,4 +1,4 @@
-// What the kinds of specimens share that are a mesh of a file.
+// Parts shared by the kinds of specimens that are a mesh from a file.
 #pragma once
 
 #include "specimen/files.hpp"
@@ -25,14 +25,14 @@ struct MeshFile {
     bool operator==(const MeshFile&) const = default;
 };
 
-// In mm and in float, centred if the description asks for it; triangles without area are dropped, and the log says how
-// many. Throws InputError where a vertex lies too far off for the others to be told apart. mention: where the
-// configuration names the file.
+// The mesh in mm and in float, centred if the description asks for it. Triangles without area are dropped, and the log
+// says how many. Throws InputError if a vertex lies so far off that the others cannot be distinguished. mention: place
+// in the configuration that names the file.
 Mesh placed_mesh(FileMesh source, const MeshFile& description, const SourceLocation& mention);
 
-// file: the key that names it; unit: of its lengths.
+// The keys of a mesh file, and their values. file: the key of its name; unit: the key of its length unit.
 std::vector<const Key*> mesh_file_keys(const FileKey& file, const ChoiceKey<double>& unit);
 void read_mesh_file(const Section& section, const FileKey& file, const ChoiceKey<double>& unit, MeshFile& mesh);
-extern const FileKey mesh_key; // `file` of the kinds whose file is a mesh
+extern const FileKey mesh_key; // `file` of kinds whose file is a mesh
 
 } // namespace vkfv::specimen

@@ -17,7 +17,8 @@ FilePoints parse_points(std::string_view bytes, const std::filesystem::path& fil
     };
     const std::string text = as_utf8(bytes);
     const auto table = surface::parse_table_text(text, file, "lines of x, y and z");
-    // Colours, normals and intensities follow the coordinates; a line of more numbers is one of a matrix of heights.
+    // Colours, normals and intensities may follow the coordinates; a line of more numbers belongs to a matrix of
+    // heights.
     constexpr std::size_t least_columns = 3, most_columns = 12;
     if (table.columns < least_columns || table.columns > most_columns) {
         refuse(fmt::format("lines of {} numbers", table.columns),

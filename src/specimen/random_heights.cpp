@@ -22,9 +22,9 @@ const NumberKey correlation_length_key =
 
 const IntegerKey random_seed_key("seed", 0, largest_seed, 1, "Of the random numbers that the surface is made of.");
 
-// One direction of the separable filter: `rows` lines of `columns` points each, periodic.
+// Filters one direction of a separable, periodic filter: `rows` lines of `columns` points each.
 void filter_lines(Grid<double>& grid, const std::vector<double>& weights) {
-    const int radius = static_cast<int>(weights.size()) - 1; // weights[k] at distance k
+    const int radius = static_cast<int>(weights.size()) - 1; // weights[k] applies at distance k
     const int columns = grid.columns;
     parallel_rows(columns, grid.rows, [&](int first, int end) {
         std::vector<double> padded(static_cast<std::size_t>(columns + 2 * radius));
@@ -34,7 +34,8 @@ void filter_lines(Grid<double>& grid, const std::vector<double>& weights) {
                 const int column = ((i - radius) % columns + columns) % columns;
                 padded[static_cast<std::size_t>(i)] = grid(column, row);
             }
-            // Weight after weight: so neighbouring points are summed at a time, each in the order of its weights.
+            // The loop over weights is outermost, so that neighbouring points are summed in parallel, each in the order
+            // of the weights.
             const double* centre = padded.data() + radius;
             for (int column = 0; column < columns; ++column) {
                 sums[static_cast<std::size_t>(column)] = weights[0] * centre[column];
@@ -50,7 +51,7 @@ void filter_lines(Grid<double>& grid, const std::vector<double>& weights) {
     });
 }
 
-// By blocks that fit into the cache.
+// The transposed grid, copied by blocks that fit into the cache.
 Grid<double> transposed(const Grid<double>& grid) {
     constexpr int block = 32;
     Grid<double> result(grid.rows, grid.columns);
@@ -101,7 +102,7 @@ std::vector<const Key*> random_heights_keys(const NumberKey& sq) {
 }
 
 RandomHeights read_random_heights(const Section& section, double sq, double pitch) {
-    RandomHeights random{.sq = sq, .correlation_length = pitch}; // of heights that are all zero
+    RandomHeights random{.sq = sq, .correlation_length = pitch}; // heights that are all zero need no length
     if (sq > 0 || section.has(correlation_length_key)) {
         random.correlation_length = from_um(section.number(correlation_length_key));
     }
@@ -120,10 +121,10 @@ std::uint32_t read_seed(const Section& section) {
 Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t seed) {
     Grid<double> noise(columns, rows);
     std::mt19937_64 generator(seed);
-    // 53 bits to the middle of a cell of (0, 1); the distributions of the standard library differ between
+    // 53 random bits give the middle of a cell of (0, 1); the standard library's distributions differ between
     // libraries.
     const auto uniform = [&] { return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53; };
-    // Numbers are drawn one after the other; all cores make normal deviates of them.
+    // Uniform numbers are drawn in sequence; all cores turn them into normal deviates.
     for (std::size_t i = 0; i < noise.values.size(); ++i) {
         noise.values[i] = uniform();
     }
@@ -133,7 +134,8 @@ Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t 
     parallel_rows(pairs_a_row, static_cast<int>((pairs + pairs_a_row - 1) / pairs_a_row), [&](int first, int end) {
         const std::size_t last = std::min(pairs, static_cast<std::size_t>(end) * pairs_a_row);
         for (std::size_t pair = static_cast<std::size_t>(first) * pairs_a_row; pair < last; ++pair) {
-            // G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates" (1958).
+            // Box-Muller transform: G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates"
+            // (1958).
             const std::size_t i = 2 * pair;
             const bool whole = i + 1 < noise.values.size();
             const double r = std::sqrt(-2 * std::log(noise.values[i]));
@@ -145,7 +147,7 @@ Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t 
         }
     });
     if (kernel > 0) {
-        // Beyond six standard deviations a weight is below 2e-8 of the first.
+        // Beyond six standard deviations weights are below 2e-8 of the first.
         std::vector<double> weights(static_cast<std::size_t>(std::ceil(6 * kernel)) + 1);
         double sum = 0;
         for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -164,18 +166,18 @@ Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t 
     return noise;
 }
 
-// The filter takes 12 standard deviations of points for every point, in both directions, beside the drawing of its
-// random numbers.
+// The work is the drawing of random numbers, and a filter of 12 standard deviations of points per point in each
+// direction.
 void check_work_of_noise(double width, double height, double pitch, double deviation, const SourceLocation& where,
                          const std::string& key) {
-    constexpr double most_steps = 0x1p34;    // half a minute of one processor core
-    constexpr double steps_of_drawing = 256; // and of the memory, 1.6 GB for the 2^26 points that this leaves at most
+    constexpr double most_steps = 0x1p34;    // takes half a minute on one processor core
+    constexpr double steps_of_drawing = 256; // also limits memory: 1.6 GB for the 2^26 points that remain at most
     const double columns = std::ceil(width / pitch) + 1, rows = std::ceil(height / pitch) + 1;
     const double points = columns * rows, taps = 12 * deviation / pitch;
     if (!(points * (steps_of_drawing + taps) > most_steps)) {
         return;
     }
-    // Coarse enough for either part to take half of them.
+    // The suggested pitch lets either part take half of the steps.
     const double area = width * height;
     const double least = std::max(std::cbrt(2 * 12 * deviation * area / most_steps),
                                   std::sqrt(2 * steps_of_drawing * area / most_steps));

@@ -10,7 +10,7 @@ namespace vkfv::specimen {
 
 namespace {
 
-// The x that minimises |columns x - right|, by Householder's reflections.
+// The x that minimises |columns x - right|, by Householder reflections.
 std::vector<double> least_squares(std::vector<std::vector<double>> columns, std::vector<double> right) {
     const std::size_t n = columns.size(), rows = right.size();
     std::vector<double> scale(n), x(n);
@@ -72,7 +72,7 @@ struct Samples {
     std::vector<double> t, f;
 };
 
-// At Chebyshev's points, or between them.
+// Samples f at Chebyshev's points (shift 0), or between them.
 Samples sample(const std::function<double(double)>& f, int points, double shift) {
     Samples samples;
     for (int k = 0; k < points; ++k) {
@@ -83,7 +83,7 @@ Samples sample(const std::function<double(double)>& f, int points, double shift)
     return samples;
 }
 
-// t P / Q of one degree, linearised.
+// A fit t P / Q with P and Q of the given degree, linearised.
 RationalFit linearised_from_zero(const Samples& at, const std::vector<double>& weights, std::size_t degree) {
     std::vector<std::vector<double>> columns(2 * degree + 1, std::vector<double>(at.t.size()));
     std::vector<double> right(at.t.size());
@@ -114,11 +114,11 @@ double from_zero(const RationalFit& fit, double t) {
 
 RationalFit fit_rational_from_zero(const std::function<double(double)>& f, std::size_t highest_degree) {
     constexpr int points = 120;
-    constexpr double softening = 0.3; // of f in the weight of an error, 1 / (f + softening)
+    constexpr double softening = 0.3; // errors have the weight 1 / (f + softening)
     const Samples fitted = sample(f, points, 0.5), between = sample(f, 3 * points, 0.25);
     RationalFit best;
     best.error = std::numeric_limits<double>::infinity();
-    constexpr int evenings = 8, rounds = 5; // it has settled after these
+    constexpr int evenings = 8, rounds = 5; // more change nothing
     for (std::size_t degree = 5; degree <= highest_degree; ++degree) {
         std::vector<double> importance;
         for (const double value : fitted.f) {
@@ -147,7 +147,7 @@ RationalFit fit_rational_from_zero(const std::function<double(double)>& f, std::
             fit.error = 0;
             for (std::size_t i = 0; i < between.t.size(); ++i) {
                 const double error = std::abs(from_zero(fit, between.t[i]) - between.f[i]);
-                fit.error = error <= fit.error ? fit.error : error; // not a number counts as the largest
+                fit.error = error <= fit.error ? fit.error : error; // NaN counts as the largest error
             }
             if (fit.error < best.error) {
                 best = fit;
@@ -161,7 +161,7 @@ RationalFit fit_rational(const std::vector<double>& x, const std::vector<double>
                          double wanted_error) {
     RationalFit best;
     best.error = std::numeric_limits<double>::infinity();
-    constexpr int rounds = 10; // it has settled after four or five
+    constexpr int rounds = 10; // it converges after four or five
     for (std::size_t degree = 2; degree <= highest_degree; ++degree) {
         std::vector<double> weights(x.size(), 1.0);
         for (int round = 0; round < rounds && best.error > wanted_error; ++round) {

@@ -26,9 +26,9 @@ struct Bounds {
     }
 };
 
-// Bounds of the bicubic interpolation of surface_function.glsl, rigorous cell by cell: in one direction the
-// weights have the sum 1 and the sum of their sizes is at most 5/4 (in the middle of an interval), and the
-// largest slope of a cubic over an interval is at an end or where its second derivative is zero.
+// Rigorous bounds, cell by cell, of the bicubic interpolation of surface_function.glsl: in one direction the weights
+// sum to 1, the sum of their moduli is at most 5/4 (in the middle of an interval), and the largest slope of a cubic
+// over an interval is at an end or where its second derivative is zero.
 struct LatticeBounds {
     Bounds height;
     double slope = 0;
@@ -54,11 +54,11 @@ double largest_cubic_slope(const std::array<double, 4>& h) {
     return largest;
 }
 
-// Of each interval between neighbouring columns of a row: the four points about it.
+// Bounds over the four points about each interval between neighbouring columns of a row.
 struct RowIntervals {
     std::vector<double> lowest;
     std::vector<double> highest;
-    std::vector<double> slope; // along x, times the pitch
+    std::vector<double> slope; // slope along x times the pitch
 
     explicit RowIntervals(std::span<const float> heights)
         : lowest(heights.size() - 1), highest(lowest.size()), slope(lowest.size()) {
@@ -75,7 +75,7 @@ struct RowIntervals {
     }
 };
 
-// Of the cells between `row` and the next; rows: the four about them.
+// Bounds of the cells between `row` and the next; rows: the intervals of the four rows about them.
 LatticeBounds bounds_of_cells(const HeightField& lattice, int row, const std::array<const RowIntervals*, 4>& rows,
                               std::vector<double>& slopes_y) {
     const Grid<float>& heights = lattice.heights;
@@ -106,7 +106,7 @@ LatticeBounds bounds_of_cells(const HeightField& lattice, int row, const std::ar
         result.height.include(middle + reach);
         slope_x /= lattice.pitch_x;
         slope_y /= lattice.pitch_y;
-        // hypot() is slow, and few cells are steeper than all before.
+        // The comparison of squares avoids the slow hypot() for all but the few cells steeper than those before.
         constexpr double rounding = 1e-12;
         const double square = slope_x * slope_x + slope_y * slope_y;
         if (square >= (1 - rounding) * steepest_square) {
@@ -173,12 +173,12 @@ ShapeBounds bounds_of_shape(const Analytic& a) {
         const double cap = std::abs(p[1]);
         result.height.include(0);
         result.height.include(p[1]);
-        // Steepest at the cap's rim or, if that is outside, at the footprint's corner.
+        // The slope is greatest at the cap's rim or, if that lies outside, at the footprint's corner.
         const double r_squared = std::min(cap * (2 * p[0] - cap), far_x * far_x + far_y * far_y);
         result.slope = std::sqrt(r_squared / (p[0] * p[0] - r_squared));
         break;
     }
-    default: // sinusoid, chirp
+    default: // sinusoid and chirp
         result.height.include(-std::abs(p[0]));
         result.height.include(std::abs(p[0]));
         result.slope = std::abs(p[0]) * 2 * pi / (a.shape == physics::f64::SHAPE_CHIRP ? std::min(p[1], p[2]) : p[1]);
@@ -235,7 +235,7 @@ struct Recorder {
             record.top += lattice.height.upper;
             record.lipschitz += lattice.slope;
         }
-        record.lipschitz *= 1 + std::numeric_limits<float>::epsilon(); // stays a bound when rounded to float
+        record.lipschitz *= 1 + std::numeric_limits<float>::epsilon(); // rounding up, so that it stays a bound in float
         record.x_min = analytic.x_min;
         record.y_min = analytic.y_min;
         record.x_max = analytic.x_max;
@@ -264,8 +264,8 @@ SpecimenRecord record_of_geometry(const Specimen& specimen) {
     if (specimen.reflectance) {
         result.reflectance = specimen.reflectance->record;
     }
-    // Rays start on the plane z = top and must find the surface ahead of them, also where it is level and
-    // after rounding to float: 128 steps of a float of the largest coordinate.
+    // A distance between the plane z = top, where rays start, and the surface, also if it is level and rounded to
+    // float: 128 float steps of the largest coordinate.
     const double largest = std::max({std::abs(result.x_min), std::abs(result.x_max), std::abs(result.y_min),
                                      std::abs(result.y_max), std::abs(result.bottom), std::abs(result.top)});
     const double margin = 128 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;

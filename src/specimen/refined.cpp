@@ -49,7 +49,7 @@ HeightField refined(const HeightField& field, double pitch, const SourceLocation
              fmt::format("Choose roughness.pitch_um >= {:.3g}.", 1.01 * least * um_per_mm)});
     }
     const int columns = static_cast<int>(points(width)), rows = static_cast<int>(points(height));
-    // Around the same centre.
+    // The finer grid has the same centre.
     return on_grid(field, 0.5 * (field.x_min + field.x_max() - (columns - 1) * pitch),
                    0.5 * (field.y_min + field.y_max() - (rows - 1) * pitch), columns, rows, pitch);
 }

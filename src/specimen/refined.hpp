@@ -1,15 +1,16 @@
-// Height fields at the points of other grids, by surface/resample.hpp.
+// Height fields resampled at the points of other grids, by surface/resample.hpp.
 #pragma once
 
 #include "specimen/specimen.hpp"
 
 namespace vkfv::specimen {
 
-// The field at the points of another grid within it; a point is interpolated where the nearest one of the field is.
+// The field at the points of another grid within it; a point counts as interpolated if the nearest one of the field
+// does.
 HeightField on_grid(const HeightField& field, double x0, double y0, int columns, int rows, double pitch);
 
-// The same on a grid of a finer pitch, that of [specimen.roughness], around the same centre. Throws InputError for more
-// points than fit into memory.
+// The field on a grid of the finer pitch (mm) of [specimen.roughness], around the same centre. Throws InputError for
+// more points than fit into memory.
 HeightField refined(const HeightField& field, double pitch, const SourceLocation& where);
 
 } // namespace vkfv::specimen

@@ -19,7 +19,7 @@ using physics::f64::PATTERN_GRATING;
 using physics::f64::PATTERN_GRID;
 using physics::f64::PATTERN_STAR;
 
-// The refusals of lengths.hpp, for keys of this table.
+// Refusals as in lengths.hpp, for keys of [specimen.reflectance].
 void require_share(const char* key, double value, const SourceLocation& where) {
     require(value >= 0 && value <= 1, where, std::string("reflectance.") + key, value, "a number in [0, 1]");
 }
@@ -47,7 +47,7 @@ void check_noise(const Reflectance& noise, const Rectangle& footprint, const Sou
     require_um(noise.correlation_length >= 0 && noise.correlation_length <= std::max(width, height), where,
                "reflectance.correlation_length_um", noise.correlation_length,
                "a length, 0 or more, at most the specimen's");
-    // Between coarser points the straight lines would show.
+    // On a coarser grid linear interpolation would be visible.
     require_um(
         noise.correlation_length <= 0 || noise.pitch <= 0.5 * noise.correlation_length, where, "reflectance.pitch_um",
         noise.pitch,
@@ -57,7 +57,7 @@ void check_noise(const Reflectance& noise, const Rectangle& footprint, const Sou
 
 Grid<float> noise_values(const Reflectance& noise, const Rectangle& footprint, const SourceLocation& where) {
     check_noise(noise, footprint, where);
-    // Rounding of a quotient of lengths: what agrees to 1e-9 is the same.
+    // Lengths that agree to 1e-9 count as equal, to allow for the rounding of a quotient.
     const auto points = [&](double length) {
         return static_cast<int>(std::ceil(length / noise.pitch * (1 - 1e-9))) + 1;
     };

@@ -1,4 +1,4 @@
-// What varies a specimen's reflectance over x and y: patterns, noise, and the grey values of an image.
+// The variation of a specimen's reflectance over x and y: patterns, noise, and the grey values of an image.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -10,33 +10,34 @@
 
 namespace vkfv::specimen {
 
-// What a configuration says of it. Lengths in mm, angles in rad, specimen frame. Of light: in the plane that it passes.
+// A reflectance pattern as a configuration describes it. Lengths in mm, angles in rad, specimen frame. It also
+// describes a transmission pattern of the light, in the plane that the light passes.
 struct Reflectance {
     enum class Kind { even, grating, checkerboard, star, noise, image };
     Kind kind = Kind::grating;
-    double lowest = 0; // factors of the material's reflectance, in [0, 1]; not of noise
+    double lowest = 0; // limits of the factor on the material's reflectance, in [0, 1]; unused for noise
     double highest = 1;
-    double x = 0; // of the pattern's origin; not of noise
+    double x = 0; // origin of the pattern; unused for noise
     double y = 0;
-    double angle = 0;    // from +x towards +y
-    bool square = false; // the profile of a grating or star; else sinusoidal
-    double period = 0;   // of a grating
-    double side = 0;     // of a checkerboard's squares
-    int cycles = 0;      // of a star, in one turn
-    double pitch = 0;    // of the points of noise, or of the image's pixels
-    double mean = 0;     // of noise: this and the next are met exactly before it is clipped to [0, 1]
+    double angle = 0;    // direction, from +x towards +y
+    bool square = false; // true: rectangular profile of a grating or star; false: sinusoidal
+    double period = 0;   // period of a grating
+    double side = 0;     // side of a checkerboard's squares
+    int cycles = 0;      // cycles of a star in one turn
+    double pitch = 0;    // pitch of the points of noise, or of the image's pixels
+    double mean = 0;     // for noise; this and the next are met exactly before clipping to [0, 1]
     double standard_deviation = 0;
-    double correlation_length = 0; // of noise; 0: it is white
+    double correlation_length = 0; // for noise; 0: white noise
     std::uint32_t seed = 0;
-    std::filesystem::path file{}; // the image
+    std::filesystem::path file{}; // file of the image
 
     bool operator==(const Reflectance&) const = default;
 };
 
-// The map as the trace takes it: shaders/physics/reflectance.glsl.
+// The reflectance map as the trace takes it: shaders/physics/reflectance.glsl.
 struct ReflectanceMap {
     physics::f64::Pattern record{};
-    Grid<float> values{}; // of a grid, in [0, 1]; row 0 at the lowest y
+    Grid<float> values{}; // values of a grid, in [0, 1]; row 0 at the lowest y
 };
 
 // A rectangle of the specimen frame, mm.
@@ -44,10 +45,11 @@ struct Rectangle {
     double x_min = 0, y_min = 0, x_max = 0, y_max = 0;
 };
 
-// even: 1 everywhere. footprint: the specimen's, which noise covers; beyond an image's edge its pixels go on mirrored.
-// Noise is a normal random field with the autocorrelation exp(-(r/l)^2), l the correlation length, clipped; its bits
-// depend on its numbers and the footprint alone. Throws InputError (keys of [specimen.reflectance]) for values that do
-// not fit, pixels outside [0, 1] and missing or damaged files. where: of the [specimen] table.
+// Makes the map of a pattern; the pattern `even` is 1 everywhere. footprint: the specimen's, which noise covers; beyond
+// an image's edge its pixels are continued by reflection. Noise is a normal random field with the autocorrelation
+// exp(-(r/l)^2), l the correlation length, clipped to [0, 1]; its bits depend only on its parameters and the footprint.
+// Throws InputError (keys of [specimen.reflectance]) for invalid values, pixels outside [0, 1] and missing or damaged
+// files. where: place of the [specimen] table.
 ReflectanceMap make_reflectance_map(const Reflectance& reflectance, const Rectangle& footprint,
                                     const SourceLocation& where);
 

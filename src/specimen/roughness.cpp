@@ -22,7 +22,7 @@ using physics::f64::surface_height;
 
 namespace {
 
-// Takes the wavelengths out of a periodic grid's spectrum that are shorter or longer; in points.
+// Removes wavelengths shorter or longer than these (in points) from a periodic grid's spectrum.
 void keep_wavelengths(Grid<double>& grid, double shortest, double longest) {
     Grid<std::complex<double>> spectrum(grid.columns, grid.rows);
     std::ranges::copy(grid.values, spectrum.values.begin());
@@ -40,7 +40,7 @@ void keep_wavelengths(Grid<double>& grid, double shortest, double longest) {
     std::ranges::transform(spectrum.values, grid.values.begin(), [](const auto& value) { return value.real(); });
 }
 
-// The noise of one unit, filtered.
+// Filtered noise of unit standard deviation before the filter.
 Grid<double> unit_roughness(int columns, int rows, const Roughness& roughness) {
     const double kernel = roughness.kernel / roughness.pitch;
     if (!roughness.shortest && !roughness.longest) {
@@ -58,7 +58,7 @@ Grid<double> unit_roughness(int columns, int rows, const Roughness& roughness) {
     return part;
 }
 
-// The mean of |value - mean|.
+// The mean of |value - mean| over a line.
 double mean_deviation(std::span<const double> line) {
     const auto count = static_cast<double>(line.size());
     const double mean = std::reduce(line.begin(), line.end(), 0.0) / count;
@@ -84,7 +84,7 @@ RoughnessHeights roughness_heights(const Grid<double>& heights) {
                 std::span(heights.values).subspan(heights.index(0, row), static_cast<std::size_t>(heights.columns)));
         }
     });
-    // Columns that stand beside each other are copied together: each would fetch all of the memory.
+    // Several neighbouring columns are copied together, because a single one would fetch all of the memory.
     constexpr int together = 16;
     std::vector<double> of_columns(static_cast<std::size_t>(heights.columns));
     parallel_bands(heights.columns, together, [&](int first, int end) {
@@ -147,7 +147,7 @@ void check_roughness(double width, double height, const Roughness& roughness, co
 
 void add_roughness(HeightField& field, const Roughness& roughness, const SourceLocation& where) {
     check_roughness(field.x_max() - field.x_min, field.y_max() - field.y_min, roughness, where);
-    // Rounding of a quotient of lengths: pitches that agree to 1e-9 are the same.
+    // Pitches that agree to 1e-9 count as equal, to allow for the rounding of a quotient.
     const double coarsest = std::max(field.pitch_x, field.pitch_y);
     if (roughness.pitch < coarsest * (1 - 1e-9)) {
         throw InputError({where, "specimen.roughness.pitch_um", fmt::format("{:.6g}", roughness.pitch * um_per_mm),

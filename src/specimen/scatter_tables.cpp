@@ -15,7 +15,7 @@ using LobeRecord = physics::f64::Lobe;
 double henyey_greenstein_exact_norm(double g, double cosine) {
     const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
     const double magnitude = std::abs(g), height = magnitude * cosine, rho = magnitude * sine;
-    const double inside = (1 - magnitude) + magnitude * cosine * cosine / (1 + sine); // 1 - rho
+    const double inside = (1 - magnitude) + magnitude * cosine * cosine / (1 + sine); // this is 1 - rho
     const double scale = std::hypot(inside, height);
     constexpr int panels = 48;
     constexpr double places[] = {-0.774596669241483377, 0, 0.774596669241483377}, weights[] = {5, 8, 5};
@@ -23,9 +23,9 @@ double henyey_greenstein_exact_norm(double g, double cosine) {
     double sum = 0;
     for (int point = 0; point < 3 * panels; ++point) {
         const double t = half_panel * (2 * (point / 3) + 1 + places[point % 3]);
-        const double mu = scale * std::sinh(t), d_mu = scale * std::cosh(t); // over dt
+        const double mu = scale * std::sinh(t), d_mu = scale * std::cosh(t); // derivative by t
         const double s = std::sqrt(std::max(1 - mu * mu, 0.0));
-        const double across = inside - mu * mu / (1 + s); // s - rho
+        const double across = inside - mu * mu / (1 + s); // this is s - rho
         const double rise = (mu + height) * (mu + height);
         const double least = across * across + rise, most = (s + rho) * (s + rho) + rise;
         const double modulus = std::sqrt(std::max(1 - least / most, 0.0));
@@ -36,15 +36,15 @@ double henyey_greenstein_exact_norm(double g, double cosine) {
 
 namespace {
 
-// The norm over the cosine, fitted.
+// The lobe with a fit of its norm over the cosine of incidence.
 LobeRecord with_henyey_greenstein_norm(LobeRecord lobe) {
     const double g = lobe.parameter_0;
     if (g == 1) {
         return lobe;
     }
-    // Farther branch points than 1 do not matter.
+    // The distance of the norm's branch points; beyond 1 they have no effect.
     const double distance = std::abs(g) > 0.4 ? (1 - g) * (1 + g) / (2 * std::abs(g)) : 1.0;
-    // Chebyshev's points in the variable over which N changes evenly.
+    // The points are Chebyshev's in the variable over which N varies evenly.
     constexpr int points = 100;
     std::vector<double> x, quotient;
     for (int k = 0; k < points; ++k) {
@@ -77,7 +77,7 @@ LobeRecord with_ggx_lack(LobeRecord lobe) {
     std::ranges::fill(lobe.table, 0.0);
     std::ranges::copy(fit.numerator, lobe.table);
     std::copy(fit.denominator.begin() + 1, fit.denominator.end(), lobe.table + 8);
-    // The mean is taken over the fit itself, so that what is lost is what is given back. The cosine is s^3.
+    // The mean is that of the fit, not of the function, so that exactly the lost light is returned. The cosine is s^3.
     constexpr int panels = 4000;
     double mean = 0, most = 0, most_flat = 0;
     for (int k = 0; k < panels; ++k) {
@@ -90,7 +90,7 @@ LobeRecord with_ggx_lack(LobeRecord lobe) {
     for (int k = 0; k < 8; ++k) {
         lobe.table[k] /= std::sqrt(mean);
     }
-    constexpr double margin = 1.01; // between the points, and in float
+    constexpr double margin = 1.01; // covers values between the points, and rounding in float
     const bool smooth_surface = physics::f64::ggx_multiple_scatter_is_smooth(alpha);
     lobe.table[15] = margin * (smooth_surface ? most_flat : most) / std::sqrt(mean);
     return lobe;
@@ -103,10 +103,10 @@ LobeRecord with_harvey_shack_scale(LobeRecord lobe) {
     return lobe;
 }
 
-// A of the integral of d / (B + d^g) over d up to 1, in y = -log(d).
+// The lobe with the factor A, from the integral of d / (B + d^g) over d up to 1, computed in y = -log(d).
 LobeRecord with_abg_scale(LobeRecord lobe) {
     const double b = lobe.parameter_0, g = lobe.parameter_1;
-    const double last = 20 - std::log(b) / g; // what lies beyond is lost in rounding
+    const double last = 20 - std::log(b) / g; // the tail beyond is below rounding
     const int panels = static_cast<int>(std::ceil(20 * last));
     const double half_panel = 0.5 * last / panels;
     constexpr double places[] = {-0.774596669241483377, 0, 0.774596669241483377}, weights[] = {5, 8, 5};
@@ -123,7 +123,7 @@ LobeRecord with_abg_scale(LobeRecord lobe) {
 
 double ggx_kept(double alpha, double cosine) {
     const double incidence = std::acos(cosine), sine = std::sin(incidence);
-    const double width = 0.5 * alpha * std::max(cosine, 1e-12); // of the lobe; the horizon is no nearer
+    const double width = 0.5 * alpha * std::max(cosine, 1e-12); // width of the lobe, limited for grazing incidence
     const auto reach = [&](double c) { return std::sqrt(alpha * alpha + (1 - alpha) * (1 + alpha) * c * c); };
     constexpr int panels = 200;
     constexpr double places[] = {-0.774596669241483377, 0, 0.774596669241483377}, weights[] = {5, 8, 5};

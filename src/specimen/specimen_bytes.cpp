@@ -11,7 +11,7 @@ std::string specimen_bytes(const std::filesystem::path& file, const SourceLocati
         return read_file(file, {.key = key, .expected = "a file that can be read"});
     } catch (const InputError& error) {
         InputProblem problem = error.problem();
-        // A file that became shorter while it was read keeps its place.
+        // A problem with a byte offset, such as a file truncated while it was read, keeps its own place.
         if (!problem.where.byte_offset && !mention.file.empty()) {
             problem.where = mention;
             problem.found = fmt::format("{} ({})", file.string(), problem.found);

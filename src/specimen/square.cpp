@@ -7,7 +7,7 @@
 namespace vkfv::specimen {
 namespace {
 
-constexpr double default_pitch_um = 0.5; // below what any objective resolves
+constexpr double default_pitch_um = 0.5; // below the resolution of any objective
 
 const NumberKey size_key =
     for_example("0.3", NumberKey("size_mm", NumberRange::positive(), needed,
@@ -53,7 +53,7 @@ const Key& square_pitch_key() {
 }
 
 double read_square_pitch(const Section& section) {
-    // Facets as fine as the roughness needs them.
+    // By default facets are as fine as the roughness needs.
     const auto roughness = section.table().optional_table("roughness");
     const auto of_roughness =
         roughness ? roughness->optional_number("pitch_um", NumberRange::positive()) : std::nullopt;

@@ -1,4 +1,4 @@
-// What the kinds of specimens share that are made by a rule over a square footprint, centred on the axis.
+// Parts shared by the kinds of specimens that are generated over a square footprint, centred on the axis.
 #pragma once
 
 #include "specimen/lengths.hpp"
@@ -15,32 +15,32 @@ class Section;
 namespace vkfv::specimen {
 
 struct Square {
-    double size = 0;  // side, mm
-    double pitch = 0; // of the facets' grid, mm; adjusted to divide the size
+    double size = 0;  // mm, side
+    double pitch = 0; // mm, of the facets' grid; adjusted to divide the size
 
     bool operator==(const Square&) const = default;
 };
 
 enum class Representation { facets, analytic };
 
-// Of kinds whose surface is a continuous function too.
+// The base of kinds whose surface is also a continuous function.
 struct Continuous : Square {
     Representation representation = Representation::facets;
 
-    // The function `shape` of physics/surface_function.glsl (SHAPE_STEP) over the footprint.
+    // The function `shape` of physics/surface_function.glsl (for example SHAPE_STEP) over the footprint.
     Analytic function_of(std::uint32_t shape, const std::array<double, 4>& parameters = {}) const;
 
     bool operator==(const Continuous&) const = default;
 };
 
-// The keys of the bases, followed by those of a kind.
+// The keys of the base classes, followed by those of a kind.
 std::vector<const Key*> square_keys(const std::vector<const Key*>& of_the_kind);
 std::vector<const Key*> continuous_keys(const std::vector<const Key*>& of_the_kind);
 
 void read_square(const Section& section, Square& square);
 void read_continuous(const Section& section, Continuous& continuous);
 
-// The pitch alone, of a kind whose size follows from other keys.
+// The key of the pitch alone, for a kind whose size follows from other keys.
 const Key& square_pitch_key();
 double read_square_pitch(const Section& section);
 

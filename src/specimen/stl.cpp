@@ -15,7 +15,7 @@ namespace vkfv::specimen {
 
 namespace {
 
-// Collects facets of three vertices, one index for equal positions.
+// Collects facets of three vertices, with one index for equal positions.
 class Welder {
   public:
     void add(const glm::vec3& position) {
@@ -51,7 +51,7 @@ class Welder {
 };
 
 constexpr std::size_t binary_header = 80;
-constexpr std::size_t binary_start = 84;    // after the count of triangles
+constexpr std::size_t binary_start = 84;    // offset after the count of triangles
 constexpr std::size_t binary_triangle = 50; // normal, three vertices (float32), attribute (uint16)
 
 static_assert(std::endian::native == std::endian::little, "STL is read in place");
@@ -78,7 +78,7 @@ FileMesh read_binary(std::string_view bytes, std::uint32_t count, const std::fil
     return welder.take();
 }
 
-// Words of an ASCII STL with the place they stand at.
+// The words of an ASCII STL with their places.
 class Words {
   public:
     Words(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file) {}
@@ -128,7 +128,7 @@ class Words {
     }
 
   private:
-    // Lines end with LF, CR LF or, of old, CR alone.
+    // Lines end with LF, CR LF or, in old files, CR alone.
     void step() {
         const char character = text_[at_++];
         if (character == '\n' || (character == '\r' && (at_ == text_.size() || text_[at_] != '\n'))) {
@@ -149,13 +149,13 @@ FileMesh read_ascii(std::string_view text, const std::filesystem::path& file) {
     Words words(text, file);
     Welder welder;
     words.expect("solid");
-    for (;;) { // solids
+    for (;;) { // one pass per solid
         words.skip_line();
         std::string word;
         while ((word = words.next()) == "facet") {
             words.expect("normal");
             for (int axis = 0; axis < 3; ++axis) {
-                words.next(); // exporters write nan for the normal of a degenerate facet; it is not used
+                words.next(); // skips the normal: exporters write nan for degenerate facets
             }
             words.expect("outer");
             words.expect("loop");
@@ -184,7 +184,7 @@ FileMesh read_ascii(std::string_view text, const std::filesystem::path& file) {
 }
 
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-constexpr std::string_view wide_marks[] = {"\xff\xfe", "\xfe\xff"}; // of UTF-16
+constexpr std::string_view wide_marks[] = {"\xff\xfe", "\xfe\xff"}; // byte-order marks of UTF-16
 
 std::string lower_case(std::string_view text) {
     std::string result(text);
@@ -192,9 +192,9 @@ std::string lower_case(std::string_view text) {
     return result;
 }
 
-// It begins with "solid", as headers of binary files do too, and goes on as text does.
+// True if the file begins with "solid", as headers of binary files may too, and continues as text does.
 bool looks_like_text(std::string_view text) {
-    constexpr std::size_t head_bytes = 4096; // more than any name of a solid
+    constexpr std::size_t head_bytes = 4096; // more than the name of any solid
     const std::string head = lower_case(text.substr(0, head_bytes));
     const std::size_t start = std::min(head.find_first_not_of(" \t\r\n"), head.size());
     const std::size_t first_control = static_cast<std::size_t>(

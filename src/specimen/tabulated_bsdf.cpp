@@ -18,7 +18,7 @@ namespace vkfv::specimen {
 
 namespace {
 
-// Numbers are told by a float's whole numbers, and searched by every ray.
+// The limit on numbers: a float indexes them exactly, and every ray searches them.
 constexpr std::size_t most_numbers = 8000000;
 
 struct Between {
@@ -32,14 +32,14 @@ Between between(const std::vector<double>& points, double value) {
     return {point, std::clamp((value - points[point]) / (points[point + 1] - points[point]), 0.0, 1.0)};
 }
 
-// The integral of (lower at a, upper at b, linear between them) sin cos over [a, b].
+// The integral of f sin cos over [a, b], where f is linear from `lower` at a to `upper` at b.
 double integral_of_linear(double a, double b, double lower, double upper) {
     const double even = 0.5 * std::sin(b - a) * std::sin(b + a);
     const double rising = -(b - a) * std::cos(2 * b) / 4 + (std::sin(2 * b) - std::sin(2 * a)) / 8;
     return lower * even + (upper - lower) / (b - a) * rising;
 }
 
-// The points and the ends of their range, where the outermost values hold.
+// The points, extended to the ends of their range, where the outermost values hold.
 std::vector<double> widened(std::vector<double> points, double first, double last) {
     if (points.front() > first) {
         points.insert(points.begin(), first);
@@ -87,7 +87,7 @@ class BsdfFile {
         return result;
     }
 
-    // The line of the file with the first value of an incidence.
+    // The line of the file with the first value at an incidence.
     int line(double incidence) const { return values_.lower_bound({incidence, -1, -1})->second.line; }
 
     [[noreturn]] void fail(int line, std::string found, std::string expected, std::string remedy) const {
@@ -194,7 +194,7 @@ double TabulatedBsdf::kept(std::size_t incidence) const {
     double sum = 0;
     for (std::size_t a = 0; a + 1 < azimuths.size(); ++a) {
         for (std::size_t s = 0; s + 1 < scatters.size(); ++s) {
-            // Both sides of the plane of incidence.
+            // The sum of two neighbouring azimuths is their mean times two, for both sides of the plane of incidence.
             sum += (azimuths[a + 1] - azimuths[a]) *
                    integral_of_linear(scatters[s], scatters[s + 1], value(incidence, s, a) + value(incidence, s, a + 1),
                                       value(incidence, s + 1, a) + value(incidence, s + 1, a + 1));
@@ -207,7 +207,7 @@ std::optional<double> TabulatedBsdf::reciprocity_deviation() const {
     if (given_incidences < 2) {
         return std::nullopt;
     }
-    // The projected solid angle that an incidence stands for, and the azimuth likewise.
+    // The projected solid angle that an incidence represents, and likewise the range of an azimuth.
     const auto edge = [&](std::size_t k) { return 0.5 * (incidences[k] + incidences[k + 1]); };
     const auto area = [&](std::size_t k) {
         const double lower = k > 0 ? edge(k - 1) : incidences.front();
@@ -268,7 +268,8 @@ physics::f64::Lobe with_numbers(physics::f64::Lobe lobe, const TabulatedBsdf& bs
     lobe.table[1] = static_cast<double>(incidences);
     lobe.table[2] = static_cast<double>(scatters);
     lobe.table[3] = static_cast<double>(azimuths);
-    lobe.table[4] = *std::ranges::max_element(bsdf.values); // what the backward estimator asks of the sharpest lobe
+    lobe.table[4] =
+        *std::ranges::max_element(bsdf.values); // peak value, by which the backward estimator finds the sharpest lobe
     const auto add = [&](double number) { numbers.push_back(static_cast<float>(number)); };
     for (const auto* angles : {&bsdf.incidences, &bsdf.scatters, &bsdf.azimuths}) {
         std::ranges::for_each(*angles, add);

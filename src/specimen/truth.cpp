@@ -9,12 +9,12 @@
 namespace vkfv::specimen {
 namespace {
 
-// Points per pixel and direction, at the middles of equal parts.
+// The number of points per pixel in each direction, at the middles of equal parts.
 constexpr int subdivision = 5;
 constexpr double off_specimen = -std::numeric_limits<double>::infinity();
 
-// The points of a band of pixel rows, and the height at each: off_specimen where there is none. Places are a regular
-// grid, whose steps are the mean ones along rows and columns, and what pixels look aside of it.
+// The sample points of a band of pixel rows, and the height at each: off_specimen if there is no surface. Places are a
+// regular grid, whose steps are the mean ones along rows and columns, plus an offset (`aside`).
 class SamplePoints {
   public:
     SamplePoints(int columns, int first_row, int rows, const std::function<PixelArea(int column, int row)>& area_of)
@@ -34,7 +34,7 @@ class SamplePoints {
         measure(area_of(columns / 2, first_row + rows / 2));
     }
 
-    // Calls function(x, y, height) for all points of a rectangle, and for others near it.
+    // Calls function(x, y, height) for all points within a rectangle, and for some near it.
     template <class Function>
     void each(glm::dvec2 lower, glm::dvec2 upper, Function function) {
         if (!(upper.x >= lower_.x && lower.x <= upper_.x && upper.y >= lower_.y && lower.y <= upper_.y)) {
@@ -61,7 +61,7 @@ class SamplePoints {
     glm::dvec2 aside(int column, int row) const { return places_(column, row) - step_ * glm::dvec2(column, row); }
 
     void measure(const PixelArea& middle) {
-        // Pixels look at right angles to each other but for what is aside.
+        // The regular grid is rectangular; `aside` holds the rest.
         step_ = glm::dvec2(middle.along_row.x, middle.along_column.y) / static_cast<double>(subdivision);
         lower_ = upper_ = places_(0, 0);
         const glm::dvec2 origin = places_(0, 0);
@@ -87,14 +87,15 @@ class SamplePoints {
         return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(limit)));
     }
 
-    // Points whose places may be in the rectangle. From a point q on, a place changes by step_ times the way in columns
-    // and rows, and by at most steepest_ of the sum of both. So with the rectangle's bounds counted from q's place, in
-    // steps, a column within is no further than the bounds and steepest_ times that sum, which is bounded likewise.
+    // The points whose places may lie in the rectangle. From a point q, a place changes by step_ times the distance in
+    // columns and rows, and its offset by at most steepest_ times the sum of both. So with the rectangle's bounds
+    // relative to q's place, in steps, a column of a point within exceeds the bounds by at most steepest_ times that
+    // sum, which is bounded likewise.
     Range range_of(glm::dvec2 lower, glm::dvec2 upper) const {
         const int columns = places_.columns;
         const int rows = places_.rows;
         const glm::dvec2 middle = 0.5 * (lower + upper);
-        // The point about the rectangle's middle, by a few corrections; that it is near saves time alone.
+        // A few corrections find a point near the rectangle's middle; its nearness only saves time.
         glm::ivec2 q(columns / 2, rows / 2);
         for (int correction = 0; correction < 3; ++correction) {
             const glm::dvec2 towards = (middle - aside(q.x, q.y)) / step_;
@@ -110,7 +111,7 @@ class SamplePoints {
         if (steepest_ < steep) {
             margin = glm::min(margin, glm::dvec2(steepest_ * (reach.x + reach.y) / (1 - 2 * steepest_)));
         }
-        // One more on either side for rounding; the function decides.
+        // One more point on either side allows for rounding; the caller's function decides.
         return {.column_begin = clamped(std::floor(q.x + least.x - margin.x) - 1, columns),
                 .column_end = clamped(std::ceil(q.x + most.x + margin.x) + 2, columns),
                 .row_begin = clamped(std::floor(q.y + least.y - margin.y) - 1, rows),
@@ -118,15 +119,15 @@ class SamplePoints {
     }
 
     Grid<glm::dvec2> places_;
-    glm::dvec2 step_ = glm::dvec2(1); // mm, from point to point
+    glm::dvec2 step_ = glm::dvec2(1); // mm, between neighbouring points
     glm::dvec2 lower_ = glm::dvec2(0);
     glm::dvec2 upper_ = glm::dvec2(0);
-    glm::dvec2 farthest_aside_ = glm::dvec2(0); // of what is aside, from the first point's; steps
-    double steepest_ = 0; // the most by which what is aside changes from point to point, in steps of its direction
+    glm::dvec2 farthest_aside_ = glm::dvec2(0); // largest change of `aside` from the first point's, in steps
+    double steepest_ = 0;                       // largest change of `aside` between neighbouring points, in steps
 };
 
-// Twice the signed area of (a, b, p), computed for either order of a and b from the same numbers, so that two
-// triangles never both leave out a point on their common edge.
+// Twice the signed area of (a, b, p), computed from the same numbers for either order of a and b, so that two triangles
+// never both miss a point on their common edge.
 double edge(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
     const bool ordered = a.x < b.x || (a.x == b.x && a.y < b.y);
     const glm::dvec2& from = ordered ? a : b;
@@ -158,7 +159,7 @@ struct Fill {
             }
             const double low = static_cast<double>(h(i, j));
             const double high = static_cast<double>(h(i + 1, j + 1));
-            // The diagonal runs from (i, j) to (i+1, j+1): below it the corner (i+1, j), above it (i, j+1).
+            // The diagonal runs from (i, j) to (i+1, j+1): below it the corner is (i+1, j), above it (i, j+1).
             const double corner = static_cast<double>(a >= b ? h(i + 1, j) : h(i, j + 1));
             const double larger = std::max(a, b);
             const double smaller = std::min(a, b);
@@ -181,7 +182,7 @@ struct Fill {
                 const double w = edge(glm::dvec2(a), glm::dvec2(b), p);
                 const bool inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
                 const double sum = u + v + w;
-                if (inside && sum != 0) { // a vertical triangle covers nothing
+                if (inside && sum != 0) { // a vertical triangle covers no point
                     height = std::max(height, (u * a.z + v * b.z + w * c.z) / sum);
                 }
             });
@@ -209,7 +210,7 @@ surface::HeightMap truth(const Specimen& specimen, const PixelGrid& grid,
                            .y0 = grid.y0,
                            .pitch_x = grid.pitch_x,
                            .pitch_y = grid.pitch_y};
-    // Bands of rows keep the points of a large detector within some megabytes a thread.
+    // Bands of rows keep the memory of a large detector's points within some megabytes a thread.
     const int points_per_row = grid.columns * subdivision * subdivision;
     const int band = std::max(1, (1 << 20) / std::max(1, points_per_row));
     parallel_bands(grid.rows, band, [&](int first, int end) {

@@ -12,11 +12,11 @@ namespace {
 
 constexpr double least_mean_of_rejection = 10;
 
-// The distribution function summed up until it passes a uniform number.
+// Sums the distribution function until it exceeds a uniform number.
 double by_inversion(double mean, RandomStream& random) {
     const double uniform = random.uniforms()[0];
     double count = 0, probability = std::exp(-mean), sum = probability;
-    // Where rounding leaves the sum below the number, what would be added no longer matters.
+    // If rounding leaves the sum below the number, the loop ends where the terms vanish.
     while (uniform > sum && probability > 0) {
         count += 1;
         probability *= mean / count;
@@ -25,13 +25,13 @@ double by_inversion(double mean, RandomStream& random) {
     return count;
 }
 
-// log(n!) less Stirling's formula, n >= 10: the error of four terms is below 1e-12.
+// log(n!) minus Stirling's formula, for n >= 10: the error of four terms is below 1e-12.
 double stirling_remainder(double n) {
     const double square = n * n;
     return (1.0 / 12 - (1.0 / 360 - (1.0 / 1260 - 1.0 / 1680 / square) / square) / square) / n;
 }
 
-// The letters are Hörmann's.
+// The rejection method with Hörmann's names of variables.
 double by_rejection(double mean, RandomStream& random) {
     const double b = 0.931 + 2.53 * std::sqrt(mean);
     const double a = -0.059 + 0.02483 * b;

@@ -20,7 +20,8 @@ std::array<double, 2> RandomStream::uniforms() {
     return {uniform_of(bits.x, bits.y), uniform_of(bits.z, bits.w)};
 }
 
-// G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates", Ann. Math. Statist. 29 (1958) 610.
+// Box-Muller transform: G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates", Ann. Math.
+// Statist. 29 (1958) 610.
 double RandomStream::normal() {
     const auto [radius, angle] = uniforms();
     return std::sqrt(-2 * std::log(radius)) * std::cos(2 * pi * angle);

@@ -5,7 +5,7 @@
 namespace vkfv::surface {
 
 ArealParameters areal_parameters(const HeightMap& map) {
-    // None needs another.
+    // The groups of parameters are independent, so they are computed in parallel.
     auto spatial = std::async(std::launch::async, [&] { return spatial_parameters(map); });
     auto hybrid = std::async(std::launch::async, [&] { return hybrid_parameters(map); });
     auto feature = std::async(std::launch::async, [&] { return feature_parameters(map); });

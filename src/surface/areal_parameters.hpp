@@ -1,4 +1,4 @@
-// All parameters of ISO 25178-2 that vkfv knows, of one height map.
+// All supported parameters of ISO 25178-2, of one height map.
 #pragma once
 
 #include "surface/feature_parameters.hpp"
@@ -23,15 +23,15 @@ struct ArealParameters {
     FeatureParameters feature;
 };
 
-// No levelling, no filter: the caller's business.
+// Computes the parameters of the map as it is: levelling and filters are the caller's task.
 ArealParameters areal_parameters(const HeightMap& map);
 
 struct NamedParameter {
-    std::string_view name; // "Sa"
+    std::string_view name; // symbol: "Sa"
     double value = 0;      // mm, mm^3/mm^2, radians, shares of 1, 1/mm, 1/mm^2
 };
 
-// The parameters that the standard names, in its order; beside Sdq, by how much sampling lowers it.
+// The parameters with their symbols in the standard's order; Sdq is followed by the share that sampling takes from it.
 std::vector<NamedParameter> named_parameters(const ArealParameters& parameters);
 
 } // namespace vkfv::surface

@@ -1,4 +1,4 @@
-// Surfaces limited in scale as ISO 25178-2 has it: form removed, short and long waves filtered out.
+// Scale-limited surfaces (ISO 25178-2): form removed, short and long waves filtered out.
 #pragma once
 
 #include "surface/form.hpp"
@@ -9,29 +9,29 @@
 
 namespace vkfv::surface {
 
-// What is left of a surface. Nesting indices of the S-filter and L-filter in mm; 0: none.
+// The limits of scale of a surface. Nesting indices of the S-filter and L-filter in mm; 0: no filter.
 struct Band {
-    double s_filter = 0; // shorter waves are removed
-    double l_filter = 0; // longer waves are removed
-    bool spline = false; // by spline_filter.hpp, not by the Gaussian of ISO 16610-61
-    bool robust = false; // by robust_filter.hpp; not with `spline`
+    double s_filter = 0; // S-filter, removes shorter waves
+    double l_filter = 0; // L-filter, removes longer waves
+    bool spline = false; // spline_filter.hpp instead of the Gaussian of ISO 16610-61
+    bool robust = false; // robust_filter.hpp; excludes `spline`
     SplineEnds spline_ends = SplineEnds::natural;
-    Form form = {}; // removed before both
+    Form form = {}; // removed before both filters
 
-    bool limited() const { return s_filter > 0 || l_filter > 0; } // by a filter
+    bool limited() const { return s_filter > 0 || l_filter > 0; } // true if any filter is set
     bool operator==(const Band&) const = default;
 };
 
-// The filters alone: S, then L, of which no rounding is left (form.hpp).
+// Applies the filters alone: S, then L with the removal of rounding (form.hpp).
 HeightMap filtered(HeightMap map, const Band& band);
 
-// Which filters, by the name that configuration and command line have for them.
+// The filters' names in configuration and command line.
 inline constexpr std::array filter_names = {"gaussian", "spline", "spline-mirrored", "robust-gaussian"};
 const char* filter_name(const Band& band);
-// Throws std::invalid_argument for another name.
+// Sets the filter of this name; throws std::invalid_argument for an unknown one.
 void take_filter(Band& band, std::string_view name);
 
-// Form and filters.
+// Removes the form and applies the filters.
 HeightMap scale_limited(HeightMap map, const Band& band);
 
 } // namespace vkfv::surface

@@ -18,14 +18,16 @@ struct Point {
     Place place;
 };
 
-// Points that belong to hills, while these grow and meet in descending order of height. Each hill's root is its peak.
+// The hills of points added in descending order of height. Hills grow and merge; each hill is a tree whose root is its
+// peak.
 class Hills {
   public:
     Hills(int columns, int rows)
         : columns_(columns), rows_(rows),
           parent_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), none), order_(parent_.size()) {}
 
-    // Adds the next lower point, the `number`-th; tells each peak that ends there, at the saddle to a higher one.
+    // Adds the next lower point, the `number`-th; calls `ended` with each peak that ends there, at the saddle to a
+    // higher one.
     template <class Ended>
     void add(Place place, std::uint32_t number, const Ended& ended) {
         const int column = static_cast<int>(place % static_cast<Place>(columns_)),
@@ -65,14 +67,14 @@ class Hills {
     std::vector<std::uint32_t> order_;
 };
 
-// Points from the last to the first; clang 14 cannot read std::ranges::subrange of these iterators.
+// Reverses the order of points; clang 14 cannot compile std::ranges::subrange of these iterators.
 struct Reversed {
     const std::vector<Point>& points;
     auto begin() const { return points.rbegin(); }
     auto end() const { return points.rend(); }
 };
 
-// The peaks of points in descending order; points in ascending order have their pits told instead.
+// The significant peaks of points in descending order; for points in ascending order the significant pits.
 template <class Points>
 std::vector<Place> significant_peaks(const HeightMap& map, const Points& descending, double least_rise) {
     const auto height = [&](Place place) { return map.height.values[place]; };
@@ -84,8 +86,8 @@ std::vector<Place> significant_peaks(const HeightMap& map, const Points& descend
             if (std::abs(height(peak) - point.height) >= least_rise)
                 peaks.push_back(peak);
         });
-    // The highest peak and the hills that gaps cut off have met no higher one. Such a hill rises over its own lowest
-    // point, which is the last of its points in descending order.
+    // Left are the highest peak and the hills that gaps isolate, which have met no higher one. Such a hill's rise
+    // counts from its own lowest point, the last of its points in descending order.
     std::vector<Point> lowest;
     for (const Point& point : descending)
         if (const Place root = hills.root_of(point.place); root == point.place)

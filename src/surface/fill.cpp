@@ -8,12 +8,12 @@
 namespace vkfv::surface {
 namespace {
 
-// Sweeps over the gaps: half-way through a gap of n points takes some n sweeps, and larger ones are smooth already by
-// their coarse heights.
+// The number of smoothing sweeps: a gap of n points needs some n sweeps to its middle, and larger ones are smooth
+// already from their coarse heights.
 constexpr int sweeps = 200;
 constexpr double over_relaxation = 1.5;
 
-// Means over 2 x 2 points of what is measured there.
+// Halves a grid by means over 2 x 2 points, of the measured ones among them.
 Grid<double> halved(const Grid<double>& fine) {
     Grid<double> coarse((fine.columns + 1) / 2, (fine.rows + 1) / 2);
     for (int row = 0; row < coarse.rows; ++row)
@@ -34,7 +34,7 @@ bool has_gaps(const Grid<double>& grid) {
     return std::ranges::any_of(grid.values, [](double value) { return !std::isfinite(value); });
 }
 
-// Bilinear, at a point of the grid that `coarse` is half of.
+// The value of the half-size grid at a point of the fine grid, bilinear.
 double between(const Grid<double>& coarse, int column, int row) {
     const double u = std::clamp((column - 0.5) / 2, 0.0, coarse.columns - 1.0);
     const double v = std::clamp((row - 0.5) / 2, 0.0, coarse.rows - 1.0);

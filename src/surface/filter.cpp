@@ -14,7 +14,7 @@
 namespace vkfv::surface {
 namespace {
 
-// weights[r + k] of points k pitches away, k in -r..r; r reaches no further than an axis of so many points. Not
+// The weights[r + k] of points k pitches away, k in -r..r; r is limited by an axis of so many points. They are not
 // normalised: the caller divides by the weights present.
 std::vector<double> gaussian_weights(double nesting_index, double pitch, int points) {
     const double alpha = std::sqrt(std::numbers::ln2 / pi);
@@ -53,16 +53,17 @@ Grid<double> convolve_rows(const Grid<double>& grid, const std::vector<double>& 
     return result;
 }
 
-// Of both axes; more take longer than transforms do.
+// The largest number of weights, both axes together, for which direct sums are faster than transforms.
 constexpr std::size_t most_direct_weights = 120;
 
-// Heights and measured points are the real and the imaginary part of one convolution. A measured point's own weight is
-// one: the quotient does not magnify rounding.
-// `weights`: of each point; none: 1.
+// Filters by one convolution, with heights as its real part and measured points as its imaginary part. A measured
+// point's own weight is one, so dividing by the sum of weights does not magnify rounding. `weights`: one for each
+// point; null: all 1.
 HeightMap low_pass_by_transforms(const HeightMap& map, const std::vector<double>& along_x,
                                  const std::vector<double>& along_y, const Grid<double>* weights = nullptr) {
     constexpr double least_weight = 1e-6;
-    // In units of their greatest distance from one of them, heights round as their weights do, and a constant stays.
+    // Scaled to their greatest distance from one of them, heights have the same rounding as their weights, and a
+    // constant stays constant.
     double level = undefined, greatest = 0;
     for (const double z : map.height.values)
         if (std::isfinite(z)) {
@@ -93,7 +94,7 @@ HeightMap low_pass_by_transforms(const HeightMap& map, const std::vector<double>
 } // namespace
 
 Plane least_squares_plane(const HeightMap& map) {
-    // Pass by pass: centred sums do not cancel.
+    // Centred sums in a second pass avoid cancellation.
     double count = 0, sum_x = 0, sum_y = 0, sum_z = 0;
     const auto over_measured = [&map](auto&& visit) {
         for (int row = 0; row < map.rows(); ++row)
@@ -121,8 +122,9 @@ Plane least_squares_plane(const HeightMap& map) {
         xy += dx * dy;
         yy += dy * dy;
     });
-    // Along the points' longest extent and across: what is across points on a line shows as such, however long it is.
-    constexpr double line = 1e-10; // extent across over that along: less is rounding
+    // The normal equations use the axes along and across the points' largest extent, which reveals points on a line
+    // however long it is.
+    constexpr double line = 1e-10; // ratio of extents across and along; less is rounding
     const double angle = std::atan2(2 * xy, xx - yy) / 2, cosine = std::cos(angle), sine = std::sin(angle);
     double uu = 0, uv = 0, vv = 0, uz = 0, vz = 0;
     over_measured([&](double x, double y, double z) {

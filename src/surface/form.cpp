@@ -12,7 +12,7 @@
 namespace vkfv::surface {
 namespace {
 
-constexpr int largest_degree = 20; // of least_squares_polynomial()
+constexpr int largest_degree = 20; // limit of least_squares_polynomial()
 
 } // namespace
 
@@ -45,7 +45,7 @@ double greatest_height(const HeightMap& map) {
 }
 
 HeightMap without_rounding(HeightMap rest, double greatest) {
-    // Fits of some million points leave a tenth of it of what is of their form.
+    // Fits of some million points leave a residual of about a tenth of this.
     constexpr double rounding = 1e-13;
     if (height_parameters(rest).sq <= rounding * greatest)
         for (double& z : rest.height.values)

@@ -1,4 +1,4 @@
-// A height map: heights over a regular grid, as measured or as known to be true.
+// A height map: measured or true heights over a regular grid.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -7,7 +7,7 @@
 
 namespace vkfv::surface {
 
-// Of a figure that needs points which are not there.
+// The value of a figure for which the map has too few points.
 inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 // Heights in mm over the specimen frame's x and y in mm. NaN means "not measured".

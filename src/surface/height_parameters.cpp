@@ -18,7 +18,7 @@ HeightParameters height_parameters(const HeightMap& map) {
         return result;
     }
     result.mean = sum / count;
-    // The sum's rounding goes with the heights about it: the mean of a constant is that constant.
+    // A second pass removes the sum's rounding: the mean of a constant is that constant.
     double off = 0;
     for (const double z : map.height.values)
         if (std::isfinite(z))

@@ -5,10 +5,10 @@
 
 namespace vkfv::surface {
 
-// Over the measured points; heights are taken from their mean. mm, except the dimensionless skewness,
-// kurtosis and share. Without measured points, and for skewness and kurtosis of a constant height, NaN.
+// Height parameters over the measured points; heights are relative to their mean. mm, except the dimensionless
+// skewness, kurtosis and share. NaN without measured points, and for skewness and kurtosis of a constant height.
 struct HeightParameters {
-    double mean = 0;           // of the heights as they stand in the map
+    double mean = 0;           // mean of the map's heights
     double sa = 0;             // arithmetical mean height
     double sq = 0;             // root mean square height
     double ssk = 0;            // skewness
@@ -16,10 +16,10 @@ struct HeightParameters {
     double sp = 0;             // maximum peak height
     double sv = 0;             // maximum pit height, positive
     double sz = 0;             // maximum height, sp + sv
-    double measured_share = 0; // of all points
+    double measured_share = 0; // share of all points
 };
 
-// No levelling, no filter: the caller's business.
+// Computes the parameters of the map as it is: levelling and filters are the caller's task.
 HeightParameters height_parameters(const HeightMap& map);
 
 } // namespace vkfv::surface

@@ -17,7 +17,7 @@ struct MeanSquare {
     double value() const { return count > 0 ? sum / count : undefined; }
 };
 
-// The root mean square gradient by differences over so many pitches.
+// The root mean square gradient from differences over so many pitches.
 double gradient(const HeightMap& map, int over) {
     MeanSquare along_x, along_y;
     for (int row = 0; row < map.rows(); ++row)

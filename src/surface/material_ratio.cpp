@@ -10,7 +10,7 @@
 namespace vkfv::surface {
 namespace {
 
-// Parts are sorted by so many threads and then merged, two by two.
+// Sorts parts in parallel, one a thread, and merges them two by two.
 void sort_downwards(std::span<double> values, unsigned threads) {
     constexpr std::size_t worth_a_thread = std::size_t{1} << 16;
     if (threads <= 1 || values.size() <= worth_a_thread) {
@@ -89,8 +89,8 @@ CoreParameters core_parameters(const MaterialRatioCurve& curve) {
             first = k;
 
     const double points = static_cast<double>(span + 1);
-    const double middle = static_cast<double>(first) + 0.5 * static_cast<double>(span); // index
-    double above_first = 0; // which makes a plateau's mean exact
+    const double middle = static_cast<double>(first) + 0.5 * static_cast<double>(span); // index of the middle point
+    double above_first = 0; // differences make a plateau's mean exact
     for (std::size_t k = first; k <= first + span; ++k)
         above_first += z[k] - z[first];
     const double mean = z[first] + above_first / points;
@@ -100,7 +100,7 @@ CoreParameters core_parameters(const MaterialRatioCurve& curve) {
         square += from_middle * from_middle;
         product += from_middle * (z[k] - mean);
     }
-    // The k-th point stands at the ratio (k + 1/2) / count: the curve's ends are at -1/2 and count - 1/2.
+    // The k-th point lies at the ratio (k + 1/2) / count, so the curve's ends are at the indices -1/2 and count - 1/2.
     const double slope = product / square;
     const double upper = mean - slope * (middle + 0.5);
     const double lower = upper + slope * count;

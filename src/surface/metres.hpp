@@ -1,4 +1,5 @@
-// Lengths in files are often metres, inside they are mm; what a writer divided comes back to the same bits.
+// Conversion between metres, common in files, and mm, used internally. A length that was converted for writing is
+// restored to the same bits.
 #pragma once
 
 #include <cmath>
@@ -9,13 +10,14 @@ namespace vkfv::surface {
 
 inline constexpr double mm_per_metre = 1e3;
 
-// Never -0, which some sums turn into 0.
+// Metres from mm, without -0, into which some sums turn 0.
 inline double metres_from_mm(double mm) {
     return mm / mm_per_metre + 0.0;
 }
 
-// The quotient is off by half a step of its own and the product by another half, together less than two steps of the
-// product: the mm that gave these metres are the product or one of its neighbours.
+// Mm from metres, the inverse of metres_from_mm(). The quotient is off by half a step of its own and the product by
+// another half, together less than two steps of the product, so the original mm is the product or one of its
+// neighbours.
 inline double mm_from_metres(double metres) {
     const double mm = metres * mm_per_metre;
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -25,7 +27,7 @@ inline double mm_from_metres(double metres) {
     return mm;
 }
 
-// NaN, which means not measured, for whatever is not finite.
+// Mm from metres; NaN, which means not measured, for all values that are not finite.
 inline double height_from_metres(double metres) {
     const double mm = mm_from_metres(metres);
     return std::isfinite(mm) ? mm : std::numeric_limits<double>::quiet_NaN();

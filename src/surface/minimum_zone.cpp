@@ -17,7 +17,7 @@ struct Point {
 };
 
 struct Tilt {
-    double x = 0, y = 0; // slopes
+    double x = 0, y = 0; // slopes along x and y
 };
 
 double over(const Point& point, const Tilt& tilt) {
@@ -34,11 +34,11 @@ double range_of(const std::vector<Point>& points, const Tilt& tilt) {
     return highest - lowest;
 }
 
-// Finds the place between -reach and reach at which a convex function of one number is least.
+// The place between -reach and reach of the minimum of a convex function, by golden-section search.
 template <class Function>
 double least_of(const Function& function, double reach) {
     constexpr double golden = 1 / std::numbers::phi;
-    constexpr int rounds = 60; // the interval shrinks by 3e-13
+    constexpr int rounds = 60; // reduce the interval to 3e-13
     double from = -reach, to = reach;
     double low = to - golden * (to - from), high = from + golden * (to - from);
     double at_low = function(low), at_high = function(high);
@@ -66,7 +66,7 @@ Tilt least_tilt(const std::vector<Point>& points, const Tilt& reach) {
     return {x, best_y(x)};
 }
 
-// The highest and the lowest point over a tilt.
+// The points of highest and lowest residual from a tilt.
 std::array<Point, 2> extremes(const HeightMap& map, const Tilt& tilt) {
     std::array<Point, 2> found{};
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
@@ -110,7 +110,7 @@ double minimum_zone(const HeightMap& map) {
         }
         points.push_back(highest);
         points.push_back(lowest);
-        // No tilt further out holds the zone of the first round: over the map's length it would exceed it.
+        // Larger tilts need no search: over the map's length they alone would exceed the zone found so far.
         const double length_x = (map.columns() - 1) * map.pitch_x, length_y = (map.rows() - 1) * map.pitch_y;
         const Tilt reach{length_x > 0 ? 2 * zone / length_x : 0, length_y > 0 ? 2 * zone / length_y : 0};
         tilt = least_tilt(points, reach);

@@ -5,10 +5,10 @@
 
 namespace vkfv::surface {
 
-// The least distance of two parallel planes that hold all measured points between them, mm, across the planes. NaN
-// without measured points. By cutting planes: the tilt with the least range of a few points is found, the points that
-// stand out of it are added, until none does by more than a millionth of the zone. The range of points is a convex
-// function of the tilt, so that what is found is the least of all.
+// The least distance (mm, normal to the planes) of two parallel planes that enclose all measured points. NaN without
+// measured points. By cutting planes: the tilt with the least range of a few points is found, then the points that
+// exceed this range are added, until none exceeds it by more than a millionth of the zone. The range of points is a
+// convex function of the tilt, so the result is the global minimum.
 double minimum_zone(const HeightMap& map);
 
 } // namespace vkfv::surface

@@ -10,7 +10,7 @@
 namespace vkfv::surface {
 namespace {
 
-// P_0 to P_degree at u, by Bonnet's recursion.
+// The Legendre polynomials P_0 to P_degree at u, by Bonnet's recursion.
 Eigen::VectorXd legendre(int degree, double u) {
     Eigen::VectorXd p(degree + 1);
     p[0] = 1;
@@ -30,7 +30,7 @@ void for_terms(int degree, const Visit& visit) {
             visit(term++, i, j);
 }
 
-// The polynomial in x that stands in the row: its coefficients of P_i(u).
+// The polynomial in x along a row at y, as coefficients of P_i(u).
 Eigen::VectorXd along_row(const Polynomial& polynomial, double y) {
     const Eigen::VectorXd q = legendre(polynomial.degree, (y - polynomial.y_centre) / polynomial.half_y);
     Eigen::VectorXd result = Eigen::VectorXd::Zero(polynomial.degree + 1);
@@ -40,7 +40,7 @@ Eigen::VectorXd along_row(const Polynomial& polynomial, double y) {
     return result;
 }
 
-// Column k: the Legendre polynomials at the map's column k.
+// The Legendre polynomials in x at the map's columns, one column of the matrix each.
 Eigen::MatrixXd along_columns(const HeightMap& map, const Polynomial& polynomial) {
     Eigen::MatrixXd values(polynomial.degree + 1, map.columns());
     for (int column = 0; column < map.columns(); ++column)
@@ -48,14 +48,15 @@ Eigen::MatrixXd along_columns(const HeightMap& map, const Polynomial& polynomial
     return values;
 }
 
-// The least-squares problem, rows by rows: an orthogonal transformation brings them to a triangle, which stays as well
-// conditioned as they are, where their products would square what gaps make of it.
+// The least-squares problem, built row by row. Orthogonal transformations reduce it to a triangle, which stays as well
+// conditioned as the equations; normal equations would square the condition number that gaps cause.
 class Triangle {
   public:
     explicit Triangle(int terms)
         : terms_(terms), used_(0), equations_(Eigen::MatrixXd::Zero(4 * (terms + 1), terms + 1)) {}
 
-    // The coefficients of the terms, and as last one the right side; at most three times as many rows as terms at once.
+    // Adds equations: the coefficients of the terms, and the right side in the last column; at most three times as many
+    // rows as terms at once.
     void add(const Eigen::MatrixXd& rows) {
         if (used_ + rows.rows() > equations_.rows())
             reduce();
@@ -102,7 +103,7 @@ double Polynomial::height(double x, double y) const {
 Polynomial least_squares_polynomial(const HeightMap& map, int degree) {
     if (degree < 0 || degree > 20)
         throw std::invalid_argument("least_squares_polynomial: the degree must be from 0 to 20");
-    Range columns, rows; // with measured points
+    Range columns, rows; // ranges with measured points
     for (int row = 0; row < map.rows(); ++row)
         for (int column = 0; column < map.columns(); ++column)
             if (std::isfinite(map.height(column, row))) {
@@ -122,7 +123,7 @@ Polynomial least_squares_polynomial(const HeightMap& map, int degree) {
 
     const Eigen::MatrixXd p = along_columns(map, polynomial);
     Triangle triangle(terms);
-    Eigen::MatrixXd measured(map.columns(), degree + 2); // the polynomials in x at a row's points; their heights
+    Eigen::MatrixXd measured(map.columns(), degree + 2); // a row's points: polynomials in x, and the height
     for (int row = rows.first; row <= rows.last; ++row) {
         Eigen::Index points = 0;
         for (int column = columns.first; column <= columns.last; ++column)
@@ -130,7 +131,8 @@ Polynomial least_squares_polynomial(const HeightMap& map, int degree) {
                 measured.row(points).head(degree + 1) = p.col(column).transpose();
                 measured(points++, degree + 1) = z;
             }
-        // A row shares its polynomials in y: what it says in full fits into so many equations as it has in x.
+        // All points of a row have the same polynomials in y, so the row reduces to as many equations as it has
+        // polynomials in x.
         if (points > degree + 2) {
             Eigen::Ref<Eigen::MatrixXd> present = measured.topRows(points);
             const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> in_place(present);

@@ -15,10 +15,10 @@ namespace {
 
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
-// Where a coordinate lies among the points of an axis, in pitches.
+// The position of a coordinate along an axis, in pitches from the first point.
 double place(double coordinate, double first, double pitch) {
     const double exact = (coordinate - first) / pitch, nearest = std::round(exact);
-    // A point of the grid is itself, in spite of the rounding of its coordinates.
+    // A grid point is hit exactly, in spite of the rounding of its coordinates.
     return std::abs(exact - nearest) < 1e-9 * std::max(1.0, std::abs(nearest)) ? nearest : exact;
 }
 
@@ -40,7 +40,7 @@ double bilinear(const HeightMap& map, double x, double y) {
     return std::isfinite(sum) ? sum : not_measured;
 }
 
-// The filters of areas, on an area of one row.
+// A map of one row, to which the areal filters apply.
 HeightMap row_of(std::vector<double> heights, double spacing) {
     HeightMap map{.height = Grid<double>(static_cast<int>(heights.size()), 1),
                   .x0 = 0,

@@ -13,8 +13,8 @@ enum class Side { unknown, dale, hill };
 ProfileElements profile_elements(const Profile& profile, double reference, double threshold) {
     double spacings = 0, heights = 0, count = 0;
     Side side = Side::unknown;
-    double started = undefined;  // where the element began, in points
-    double crossing = undefined; // the last upward crossing since the dale's depth was reached
+    double started = undefined;  // start of the element, in points
+    double crossing = undefined; // first upward crossing since the dale's depth was reached
     double highest = undefined, lowest = undefined;
     for (std::size_t k = 0; k < profile.height.size(); ++k) {
         const double z = profile.height[k] - reference;
@@ -24,7 +24,7 @@ ProfileElements profile_elements(const Profile& profile, double reference, doubl
             continue;
         }
         const double before = k > 0 ? profile.height[k - 1] - reference : undefined;
-        // The first upward crossing after a dale; later ones are ripple within the threshold.
+        // Only the first upward crossing after a dale counts; later ones are ripple within the threshold.
         if (before < 0 && z >= 0 && side == Side::dale && std::isnan(crossing)) {
             crossing = static_cast<double>(k) - z / (z - before);
         }
@@ -32,7 +32,7 @@ ProfileElements profile_elements(const Profile& profile, double reference, doubl
             side = Side::dale;
             crossing = undefined;
         } else if (z <= -threshold) {
-            crossing = undefined; // it fell back
+            crossing = undefined; // the profile fell back into the dale
         }
         if (z >= threshold && side == Side::dale) {
             if (std::isfinite(started)) {

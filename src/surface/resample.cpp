@@ -10,7 +10,7 @@
 namespace vkfv::surface {
 namespace {
 
-// How a target point along one axis is made of the source's; no weights beyond the source.
+// The weights of source points for a target point along one axis; none for a target beyond the source.
 struct Taps {
     int first = 0;
     std::vector<double> weights;
@@ -20,17 +20,17 @@ struct Taps {
 
 struct Axis {
     bool averages = false;
-    std::vector<Taps> taps; // one a target point
+    std::vector<Taps> taps; // one for each target point
 };
 
-// Keys's kernel with a = -1/2 at the points one before to two after, `u` after the point.
+// Keys' kernel with a = -1/2 for a place at the distance `u` after `point`, from the point before to the second after.
 Taps cubic(int point, double u, int points) {
     const double u2 = u * u, u3 = u2 * u;
     std::vector<double> weights = {-0.5 * u + u2 - 0.5 * u3, 1 - 2.5 * u2 + 1.5 * u3, 0.5 * u + 2 * u2 - 1.5 * u3,
                                    -0.5 * u2 + 0.5 * u3};
     if (u == 0)
         return {point, {1}};
-    // A point before the first continues the line through the first two: 2 z_0 - z_1; at the end alike.
+    // A missing point before the first continues the line through the first two: 2 z_0 - z_1; likewise at the end.
     int first = point - 1;
     if (first < 0) {
         weights[1] += 2 * weights[0];
@@ -47,11 +47,11 @@ Taps cubic(int point, double u, int points) {
     return {first, weights};
 }
 
-// Shares of the target's cell, of the width `width` in source pitches, that the source's cells cover. Where these are
-// cut by the target's ends, the mean of their points stands beside the target: the slope between the ends, of the
-// linear interpolant, brings it back.
+// The weights of source cells by their share of the target's cell, of the width `width` in source pitches. If the
+// target's ends cut source cells, the mean of their points lies off the target's middle; the slope of the linear
+// interpolant between the ends corrects this.
 Taps mean(double place, double width, int points) {
-    constexpr double rounding = 1e-12; // pitches: cells are cut alike at both ends or not at all
+    constexpr double rounding = 1e-12; // in pitches: cells are cut equally at both ends or not at all
     const double low = place - width / 2, high = place + width / 2;
     const auto point_before = [points](double at) {
         return static_cast<int>(std::clamp(std::floor(at), 0.0, std::max(points - 2.0, 0.0)));
@@ -74,7 +74,7 @@ Taps mean(double place, double width, int points) {
 }
 
 Axis axis(double first, double pitch, int points, double target_first, double target_pitch, int target_points) {
-    constexpr double rounding = 1e-9; // of a coordinate
+    constexpr double rounding = 1e-9; // tolerance of coordinates, per point
     Axis result{.averages = target_pitch > 1.01 * pitch, .taps = {}};
     for (int k = 0; k < target_points; ++k) {
         double place = (target_first + k * target_pitch - first) / pitch;
@@ -96,7 +96,7 @@ HeightMap resampled(const HeightMap& map, const HeightMap& onto) {
     const Axis x = axis(map.x0, map.pitch_x, map.columns(), onto.x0, onto.pitch_x, onto.columns());
     const Axis y = axis(map.y0, map.pitch_y, map.rows(), onto.y0, onto.pitch_y, onto.rows());
 
-    // Sums of weighted heights, and of the weights' magnitudes that met no measured point.
+    // Sums of weighted heights, and of the magnitudes of weights at points that are not measured.
     Grid<double> heights(onto.columns(), map.rows()), gaps(onto.columns(), map.rows());
     for (int row = 0; row < map.rows(); ++row)
         for (int column = 0; column < onto.columns(); ++column) {
@@ -122,7 +122,7 @@ HeightMap resampled(const HeightMap& map, const HeightMap& onto) {
                 missing += std::abs(taps.weights[k]) * gaps(column, source);
             }
             const double present = x.taps[static_cast<std::size_t>(column)].total() * taps.total() - missing;
-            const bool enough = present >= (x.averages && y.averages ? 0.9 : 0.99) - 1e-9; // but for rounding
+            const bool enough = present >= (x.averages && y.averages ? 0.9 : 0.99) - 1e-9; // 1e-9 allows for rounding
             result.height(column, row) = enough ? height / present : std::numeric_limits<double>::quiet_NaN();
         }
     }

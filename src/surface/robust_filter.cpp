@@ -9,7 +9,7 @@
 namespace vkfv::surface {
 namespace {
 
-// The median of |map - low| over the measured points; 0 where nothing is measured.
+// The median of |map - low| over the measured points; 0 if there are none.
 double median_residual(const HeightMap& map, const HeightMap& low) {
     std::vector<double> residuals;
     for (std::size_t k = 0; k < map.height.values.size(); ++k) {

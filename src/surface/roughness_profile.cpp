@@ -9,7 +9,7 @@ namespace {
 constexpr ProfileParameters no_parameters{};
 constexpr double sections = 5;
 
-// As many points as that length has, in the middle.
+// The middle part of a profile, with as many points as the length has.
 Profile middle_of(const Profile& profile, double length) {
     const auto points =
         std::min(profile.height.size(), static_cast<std::size_t>(std::lround(length / profile.spacing)) + 1);
@@ -17,7 +17,7 @@ Profile middle_of(const Profile& profile, double length) {
     return {{first, first + static_cast<std::ptrdiff_t>(points)}, profile.spacing};
 }
 
-// False where the profile is too short.
+// Evaluates the profile by a setting class; false if the profile is too short.
 bool take_class(RoughnessProfile& result, const SettingClass& setting) {
     const Profile& profile = result.profile;
     const double length = static_cast<double>(profile.height.size() - 1) * profile.spacing;
@@ -37,7 +37,7 @@ void take_class_by_ra(RoughnessProfile& result) {
     for (const SettingClass& setting : setting_classes)
         if (!take_class(result, setting) || result.parameters.ra <= setting.greatest_ra)
             return;
-    result.parameters = no_parameters; // rougher than all
+    result.parameters = no_parameters; // rougher than the last class
 }
 
 } // namespace
@@ -65,7 +65,7 @@ RoughnessProfile roughness_profile(const HeightMap& map, const ProfileLine& line
     result.section_length = static_cast<double>(points - 1) * spacing / sections;
     result.l_filter =
         setting.kind == ProfileSetting::Kind::nesting_index ? setting.nesting_index : result.section_length;
-    if (result.section_length <= spacing) // of such a section the filter leaves nothing
+    if (result.section_length <= spacing) // the filter would remove all of such a section
         return result;
     result.roughness = result.l_filter > 0 ? remove_long_waves(result.profile, result.l_filter) : result.profile;
     result.parameters = profile_parameters(result.roughness);

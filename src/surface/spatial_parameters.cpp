@@ -17,7 +17,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// A function over whole indices that may be negative, periodic in the grid's size: what a transform is.
+// Interpolates a function of a transform's values at fractional indices, which may be negative: transforms are periodic
+// in the grid's size.
 template <class Function>
 double bilinear(const Grid<Complex>& grid, double x, double y, const Function& value) {
     const double column = std::floor(x), row = std::floor(y);
@@ -29,11 +30,11 @@ double bilinear(const Grid<Complex>& grid, double x, double y, const Function& v
     return (1 - v) * ((1 - u) * at(i, k) + u * at(i + 1, k)) + v * ((1 - u) * at(i, k + 1) + u * at(i + 1, k + 1));
 }
 
-// By the theorem of Wiener and Khinchin, for heights and measured points at once: the real part is the sum of the
-// products at a lag, the imaginary part the number of pairs. Heights are in units of Sq: the rounding of the one part
-// is a share of the greater of both, and squares of nanometres in mm drown in pairs.
+// The sums of products at each lag (real part) and the numbers of pairs (imaginary part), by the Wiener-Khinchin
+// theorem for both at once. Heights are in units of Sq, because rounding is relative to the larger part, and squares of
+// nanometres in mm would vanish beside the pairs.
 Grid<Complex> sums_and_pairs(const HeightMap& map, const HeightParameters& parameters) {
-    // Zeros as wide as the greatest lag keep the ends apart.
+    // Zero padding as wide as the greatest lag prevents wrapping.
     Grid<Complex> grid(convenient_length(map.columns() + map.columns() / 2 + 1),
                        convenient_length(map.rows() + map.rows() / 2 + 1));
     for (int row = 0; row < map.rows(); ++row)
@@ -41,7 +42,7 @@ Grid<Complex> sums_and_pairs(const HeightMap& map, const HeightParameters& param
             if (const double z = map.height(column, row); std::isfinite(z))
                 grid(column, row) = {(z - parameters.mean) / parameters.sq, 1};
     fourier_transform(grid);
-    // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i conj(B).
+    // The transform of a + i b with real a and b is A + i B, and at the opposite frequency conj(A) + i conj(B).
     for (int row = 0; row < grid.rows; ++row)
         for (int column = 0; column < grid.columns; ++column) {
             const int opposite_column = column == 0 ? 0 : grid.columns - column;
@@ -58,19 +59,19 @@ Grid<Complex> sums_and_pairs(const HeightMap& map, const HeightParameters& param
 
 struct Falls {
     double shortest = undefined;
-    double longest = undefined; // NaN unless every direction has one
+    double longest = undefined; // NaN unless all directions have a fall
 };
 
 Falls falls_of_autocorrelation(const HeightMap& map, const HeightParameters& parameters) {
     constexpr double s = 0.2;
     const Grid<Complex> sums = sums_and_pairs(map, parameters);
     const auto normalised = [&](Complex sum_and_pairs) {
-        // Pairs are whole numbers, but for the transform's rounding.
+        // Numbers of pairs are whole except for the transform's rounding.
         return sum_and_pairs.imag() > 0.5 ? sum_and_pairs.real() / sum_and_pairs.imag() : 1;
     };
     const int columns = map.columns() / 2, rows = map.rows() / 2;
-    constexpr double rounding = 1e-9; // of a lag along an axis, whose other part is hardly ever zero
-    // A point apart at the greatest lag; opposite lags are alike.
+    constexpr double rounding = 1e-9; // tolerance for lags along an axis, whose other component is rarely exactly zero
+    // Neighbouring directions differ by a point at the greatest lag; opposite lags are equivalent.
     const int directions = 4 * std::max({columns, rows, 1});
     const auto found = parallel_list(directions, [&](int direction) {
         const double angle = pi * direction / directions;
@@ -114,7 +115,7 @@ double texture_direction(const HeightMap& map, double mean) {
     const double extent_x = spectrum.columns * map.pitch_x, extent_y = spectrum.rows * map.pitch_y;
     const double lowest = 2 / std::min(map.columns() * map.pitch_x, map.rows() * map.pitch_y);
     const double highest = 0.5 / std::max(map.pitch_x, map.pitch_y);
-    const double step = 0.5 / std::max(extent_x, extent_y); // half the finer line distance
+    const double step = 0.5 / std::max(extent_x, extent_y); // half the finer spacing of frequencies
     const int directions = static_cast<int>(std::ceil(2 * pi * highest / (2 * step)));
     if (!(highest > lowest))
         return undefined;
@@ -128,14 +129,15 @@ double texture_direction(const HeightMap& map, double mean) {
         return sum;
     });
     const auto greatest = std::max_element(power.begin(), power.end());
-    const double angle = pi * static_cast<double>(greatest - power.begin()) / directions; // of the waves, 0 to pi
+    // The direction of the waves, 0 to pi.
+    const double angle = pi * static_cast<double>(greatest - power.begin()) / directions;
     return angle > 0 ? angle - pi / 2 : pi / 2;
 }
 
 } // namespace
 
 SpatialParameters spatial_parameters(const HeightMap& map) {
-    // Not by Sq, which the mean's rounding keeps above zero.
+    // The range decides whether the height is constant, as the mean's rounding keeps Sq above zero.
     double lowest = undefined, highest = undefined;
     for (const double z : map.height.values) {
         lowest = std::fmin(lowest, z);

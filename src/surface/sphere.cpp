@@ -19,7 +19,8 @@ void for_measured(const HeightMap& map, const Visit& visit) {
                 visit(Vector3d(map.x(column), map.y(row), z));
 }
 
-// Unknowns of unlike magnitude are brought to one before the decomposition; NaN where the points leave one open.
+// Solves a linear system after scaling unknowns of different magnitude to one; NaN if the system leaves one
+// undetermined.
 template <class Matrix, class Vector>
 Vector solve_scaled(const Matrix& matrix, const Vector& right) {
     const Vector scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
@@ -34,7 +35,7 @@ Vector solve_scaled(const Matrix& matrix, const Vector& right) {
 double Sphere::height(double x, double y) const {
     const double dx = x - x_centre, dy = y - y_centre;
     const double square = dx * dx + dy * dy;
-    // The depth below the apex, without cancellation for great radii.
+    // This form of the depth below the apex avoids cancellation for large radii.
     const double depth = square / (radius + std::sqrt(radius * radius - square));
     return convex ? apex - depth : apex + depth;
 }
@@ -51,7 +52,7 @@ Sphere least_squares_sphere(const HeightMap& map) {
     if (count < 4)
         return none;
 
-    // Algebraic: |p|^2 = 2 c p + constant, over points from their middle, is linear in the centre c.
+    // The algebraic fit |p|^2 = 2 c p + constant, over points relative to their mean, is linear in the centre c.
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     Vector3d products = Vector3d::Zero();
     double mean_square = 0;
@@ -69,8 +70,8 @@ Sphere least_squares_sphere(const HeightMap& map) {
     const double side = sphere.convex ? 1 : -1;
     sphere.apex = middle.z() + centre.z() + side * sphere.radius;
 
-    // Unknowns: the apex and the radius that moves the centre away from it. Centre and radius would be all but one
-    // direction on a shallow cap.
+    // The unknowns are the apex and the radius, at a fixed apex, instead of centre and radius, which would be nearly
+    // dependent on a shallow cap.
     for (int iteration = 0; iteration < 100; ++iteration) {
         Matrix4d matrix = Matrix4d::Zero();
         Vector4d right = Vector4d::Zero();

@@ -10,7 +10,8 @@
 namespace vkfv::surface {
 namespace {
 
-// What passes either filter as it is: the mean, or with natural ends the plane. The goal is one of the rest.
+// The part that the filter passes unchanged: the mean, or with natural ends the plane. The accuracy goal refers to the
+// rest.
 Plane passing(const HeightMap& map, SplineEnds ends) {
     Plane plane = least_squares_plane(map);
     if (ends == SplineEnds::mirrored)
@@ -30,8 +31,9 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 HeightMap spline_low_pass(const HeightMap& map, double nesting_index, SplineEnds ends) {
     if (!(nesting_index > 0))
         throw std::invalid_argument("spline_low_pass: the nesting index must be positive");
-    // (W + B) s = W z, W 1 at measured points and 0 elsewhere, B the bending: conjugate gradients with the filter of a
-    // whole map, (1 + B)^-1, as preconditioner. Without gaps its first step is the solution.
+    // The equation is (W + B) s = W z, with W 1 at measured points and 0 elsewhere, and B the bending. It is solved by
+    // conjugate gradients with the filter of a whole map, (1 + B)^-1, as preconditioner. Without gaps the first step
+    // gives the solution.
     const WholeSpline whole(map, nesting_index, ends);
     const std::size_t points = map.height.values.size();
     std::vector<double> weight(points), residual(points), spline(points);
@@ -42,10 +44,10 @@ HeightMap spline_low_pass(const HeightMap& map, double nesting_index, SplineEnds
             weight[k] = 1;
             residual[k] = z;
         }
-    const double goal = 1e-10 * dot(residual, residual);      // squared: a relative 1e-5
+    const double goal = 1e-10 * dot(residual, residual);      // squared: 1e-5 relative
     std::vector<double> direction(points), stretched(points); // stretched = (1 + B) direction
     double before = 0;
-    // As many steps as points would end it but for rounding, which must not keep it going.
+    // In exact arithmetic the number of points would suffice as steps; rounding must not prolong the loop.
     for (std::size_t step = 0; step < points && dot(residual, residual) > goal; ++step) {
         const std::vector<double> smooth = whole.low_pass(residual);
         const double now = dot(residual, smooth);

@@ -5,8 +5,8 @@
 
 namespace vkfv::surface {
 
-// Volumes per unit of the measured area, mm^3/mm^2 = mm, with the standard's default ratios: peaks end at 10 % of
-// the area, dales begin at 80 %. NaN without measured points.
+// Volumes per measured area, mm^3/mm^2 = mm, at the standard's default ratios: peaks end at 10 % of the area, dales
+// begin at 80 %. NaN without measured points.
 struct VolumeParameters {
     double vmp = 0; // peak material volume
     double vmc = 0; // core material volume

@@ -11,15 +11,15 @@
 namespace vkfv::surface {
 namespace {
 
-// Longer ones leave a plane, to 1e-8 of what is bent.
-constexpr double longest = 100; // of the map
+// Longer nesting indices leave a plane, to 1e-8 of the part that bends.
+constexpr double longest = 100; // in units of the map's length
 
-// 1 / (2 sin(pi pitch / L)) of ISO 16610-22, below the Nyquist wavelength that of it.
+// The factor 1 / (2 sin(pi pitch / L)) of ISO 16610-22; below the Nyquist wavelength it has the value there.
 double stiffness(double nesting_index, double pitch) {
     return 0.5 / std::sin(pi * std::min(0.5, pitch / nesting_index));
 }
 
-// Of cosine k of n points, normalised to a sum of squares of one: the second point less the first.
+// The second point minus the first, of cosine k of n points, normalised to a sum of squares of 1.
 double end_slope(int k, int n) {
     return k == 0 ? 0 : -2 * std::sqrt(2.0 / n) * std::sin(pi * k / n) * std::sin(pi * k / (2 * n));
 }
@@ -52,7 +52,7 @@ double dot(const Slopes& a, const Slopes& b) {
     return sum;
 }
 
-// to += factor * from
+// Adds factor * from to `to`.
 template <class Slopes>
 void add(Slopes& to, double factor, const Slopes& from) {
     for_each(to, [&](std::vector<double>& values, const auto& same) {
@@ -87,7 +87,7 @@ WholeSpline::WholeSpline(const HeightMap& map, double nesting_index, SplineEnds 
     const double a_x = stiffness(index, map.pitch_x), a_y = stiffness(index, map.pitch_y);
     missing_x_ = 2 * std::pow(a_x, 4);
     missing_y_ = 2 * std::pow(a_y, 4);
-    std::vector<double> bend_x, bend_y; // what -1 times the second difference makes of a cosine, times a^2
+    std::vector<double> bend_x, bend_y; // eigenvalues of -1 times the second difference, times a^2
     for (int k = 0; k < columns_; ++k) {
         end_x_.push_back(end_slope(k, columns_));
         bend_x.push_back(std::pow(2 * a_x * std::sin(pi * k / (2 * columns_)), 2));
@@ -182,7 +182,7 @@ WholeSpline::Slopes WholeSpline::solved(const Slopes& right) const {
     return solution;
 }
 
-// Of amplitudes that are multiplied by the transmission already.
+// Corrects the ends, from mirrored to natural; the amplitudes are already multiplied by the transmission.
 void WholeSpline::free_ends(Grid<double>& amplitudes) const {
     for (int l = 0; l < rows_; ++l)
         for (int k = 0; k < columns_; ++k)
@@ -209,7 +209,7 @@ std::vector<double> WholeSpline::low_pass(std::vector<double> heights) const {
     grid.columns = columns_;
     grid.rows = rows_;
     grid.values = std::move(heights);
-    // With natural ends a plane passes as it is; what is left leaves rounding nothing to stretch.
+    // With natural ends a plane passes unchanged, so it is removed first and does not enter the rounding.
     HeightMap map{.height = std::move(grid), .pitch_x = 1, .pitch_y = 1};
     Plane plane;
     if (ends_ == SplineEnds::natural) {

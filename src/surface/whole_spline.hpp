@@ -9,22 +9,22 @@
 
 namespace vkfv::surface {
 
-// The inverse of 1 + B, B what the bending energy of spline_filter.hpp is the square of, over the grid of a map.
+// The spline filter (1 + B)^-1 of a map without gaps, where B is the matrix of the bending energy of spline_filter.hpp.
 //
-// With mirrored ends cosine transforms turn B into a factor. Natural ends have less energy: along x a_x^4 times the
-// square of the difference of the two outermost points is missing in every row and at either end, and so along y; which
-// is a correction of rank 2 (columns + rows), found by conjugate gradients among the cosines' amplitudes (Woodbury).
-// Even and odd cosines do not mix.
+// With mirrored ends cosine transforms turn B into a factor. Natural ends have less energy: along x, a_x^4 times the
+// square of the difference of the two outermost points is missing in every row at either end, and likewise along y.
+// This is a correction of rank 2 (columns + rows), found by conjugate gradients among the cosines' amplitudes
+// (Woodbury). Even and odd cosines do not mix.
 class WholeSpline {
   public:
     WholeSpline(const HeightMap& map, double nesting_index, SplineEnds ends);
 
-    // Of heights in the order of the map's grid.
+    // Filters heights in the order of the map's grid.
     std::vector<double> low_pass(std::vector<double> heights) const;
 
   private:
-    // The slopes of even and odd cosines together at the ends, by the index of the cosine along the border: of the ends
-    // along x (an entry a row of amplitudes) and along y (an entry a column).
+    // The summed slopes of the even and of the odd cosines at the ends, by the index of the cosine along the border: at
+    // the ends along x (one entry for each row of amplitudes) and along y (one for each column).
     struct Slopes {
         std::array<std::vector<double>, 2> at_x, at_y;
     };
@@ -36,7 +36,7 @@ class WholeSpline {
 
     int columns_, rows_;
     SplineEnds ends_;
-    Grid<double> transmission_;            // with mirrored ends
+    Grid<double> transmission_;            // transmission of the filter with mirrored ends
     double missing_x_ = 0, missing_y_ = 0; // 2 a^4
     std::vector<double> end_x_, end_y_;    // slope of each cosine at its end
     Slopes diagonal_;

@@ -15,8 +15,8 @@ namespace {
 constexpr std::string_view al3d_magic("AliconaImaging\0\r\n", 17);
 constexpr std::size_t key_length = 20, value_length = 30, tag_length = 52;
 constexpr std::uint64_t row_alignment = 8;
-constexpr std::array images_behind = {"TextureImageOffset", "IconOffset"}; // whose bytes no longer are depths
-constexpr std::size_t least_tags = 2;                                      // Version and TagCount
+constexpr std::array images_behind = {"TextureImageOffset", "IconOffset"}; // offsets of images behind the depths
+constexpr std::size_t least_tags = 2;                                      // tags Version and TagCount
 
 class Tags {
   public:
@@ -50,7 +50,8 @@ class Tags {
     std::map<std::string, std::string> values_;
 };
 
-// Bytes from row to row: rows are padded, but for those of some writers, which show in too little room for it.
+// The number of bytes from row to row. Rows are padded, except in files of some writers, in which padded rows would not
+// fit.
 std::uint64_t stride_of(const Tags& tags, std::uint64_t offset, std::uint64_t columns, std::uint64_t rows,
                         std::uint64_t end) {
     for (const char* image : images_behind)
@@ -90,7 +91,7 @@ SurfaceFile parse_al3d(std::string_view bytes, const std::filesystem::path& path
         const auto values = depth.substr(row * stride, columns * sizeof(float));
         for (std::uint64_t column = 0; column < columns; ++column) {
             const float metres = element<float>(values, column);
-            // The text is rounded; heights beyond any surface are gaps without it as well.
+            // The mark's text is rounded; heights beyond those of any surface are gaps too.
             const bool measured =
                 std::abs(metres) < 1e30f && !(gap && std::abs(metres - *gap) <= 1e-6f * std::abs(*gap));
             result.map.height(static_cast<int>(column), static_cast<int>(rows - 1 - row)) =

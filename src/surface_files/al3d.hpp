@@ -9,7 +9,7 @@ namespace vkfv::surface {
 
 bool looks_like_al3d(std::string_view bytes);
 
-// The depth map alone, without texture. Throws InputError.
+// Reads the depth map, without texture. Throws InputError.
 SurfaceFile parse_al3d(std::string_view bytes, const std::filesystem::path& file);
 
 } // namespace vkfv::surface

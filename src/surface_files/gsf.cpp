@@ -10,8 +10,8 @@ namespace vkfv::surface {
 namespace {
 
 constexpr std::string_view gsf_magic = "Gwyddion Simple Field 1.0\n";
-constexpr std::size_t alignment = 4;                              // of the points, by one to four NULs before them
-constexpr std::string_view gsf_provenance_key = "VkfvProvenance"; // and a number: its lines
+constexpr std::size_t alignment = 4; // offset of the points is a multiple, reached by one to four NULs
+constexpr std::string_view gsf_provenance_key = "VkfvProvenance"; // followed by the number of the provenance's lines
 constexpr std::string_view gsf_title = "Height";
 
 using Fields = std::map<std::string, std::string>;
@@ -23,7 +23,7 @@ Fields fields_of(std::string_view header) {
         if (const auto equals = line.find('='); equals != std::string_view::npos) {
             std::string_view value = line.substr(equals + 1);
             value.remove_prefix(std::min(value.find_first_not_of(' '), value.size()));
-            fields[plain_line(line.substr(0, equals))] = value; // as it is: units are not ASCII alone
+            fields[plain_line(line.substr(0, equals))] = value; // unchanged, as units are not only ASCII
         }
         at += line.size() + 1;
     }
@@ -120,7 +120,7 @@ std::string gsf_bytes(const HeightMap& map, const Provenance& provenance) {
     for (int row = map.rows() - 1; row >= 0; --row)
         for (int column = 0; column < map.columns(); ++column) {
             const double mm = map.height(column, row);
-            // Never -0, to which small ones are rounded.
+            // Adding zero avoids -0, to which small heights would be rounded.
             append(bytes, std::isfinite(mm) ? static_cast<float>(metres_from_mm(mm)) + 0.0f
                                             : std::numeric_limits<float>::quiet_NaN());
         }

@@ -10,11 +10,11 @@ namespace vkfv::surface {
 
 bool looks_like_gsf(std::string_view bytes);
 
-// Heights in a unit of length over a grid in one; NaN is not measured. XOffset and YOffset are the position of the
-// point with the lowest x and y. Throws InputError.
+// Reads heights in a unit of length over a grid in a unit of length; NaN is not measured. XOffset and YOffset are the
+// position of the point with the lowest x and y. Throws InputError.
 SurfaceFile parse_gsf(std::string_view bytes, const std::filesystem::path& file);
 
-// Float32 metres. RunError for a map without extent.
+// Writes float32 metres. RunError for a map without extent.
 std::string gsf_bytes(const HeightMap& map, const Provenance& provenance);
 
 } // namespace vkfv::surface

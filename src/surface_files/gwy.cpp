@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view gwy_magic = "GWYP";
 constexpr const char* gwy_provenance_key = "vkfv provenance";
 
-// A component of an object: its type's letter and its bytes.
+// A component of an object: the letter of its type, and its bytes.
 struct Component {
     char type;
     std::string_view bytes;
@@ -33,7 +33,7 @@ std::uint64_t size_of(char type) {
     }
 }
 
-// Reads the parts of a file in their order. Views are of the file's bytes.
+// Reads the parts of a file in sequence. Views refer to the file's bytes.
 class Reader {
   public:
     Reader(const ByteReader& file, std::uint64_t begin, std::uint64_t end) : file_(file), at_(begin), end_(end) {}
@@ -55,7 +55,7 @@ class Reader {
         return rest.substr(0, length);
     }
     std::uint32_t number(const char* what) { return element<std::uint32_t>(take(sizeof(std::uint32_t), what), 0); }
-    // Name and contents: what an object is.
+    // Reads an object: its name and contents.
     std::pair<std::string_view, std::string_view> object() {
         const auto name = text("name of an object");
         const auto size = number("size of an object");
@@ -91,7 +91,7 @@ class Reader {
 
 class Object {
   public:
-    // Of an object's contents, which are bytes of the file.
+    // Reads the components of an object from its contents, a part of the file's bytes.
     Object(const ByteReader& file, std::string_view contents) : file_(file) {
         const auto begin = static_cast<std::uint64_t>(contents.data() - file.bytes(0, 0, "").data());
         Reader reader(file, begin, begin + contents.size());
@@ -116,7 +116,7 @@ class Object {
         return component == components_.end() || component->second.type != 's' ? std::string()
                                                                                : std::string(component->second.bytes);
     }
-    // Nothing where there is none of this class.
+    // The object of this name; none unless it is of this class.
     std::optional<Object> object(const std::string& name, std::string_view kind) const {
         const auto component = components_.find(name);
         if (component == components_.end() || component->second.type != 'o')
@@ -126,7 +126,7 @@ class Object {
         const auto [found, contents] = Reader(file_, begin, begin + bytes.size()).object();
         return found == kind ? std::optional(Object(file_, contents)) : std::nullopt;
     }
-    // mm per unit; nothing for another quantity. Gwyddion leaves out the object of a quantity without unit.
+    // The unit in mm; none for another quantity. Gwyddion omits the object of a quantity without unit.
     std::optional<double> unit(const char* name) const {
         const auto unit = object(name, "GwySIUnit");
         return unit ? mm_per_unit(unit->text("unitstr")) : std::nullopt;
@@ -178,7 +178,7 @@ HeightMap map_of(const ByteReader& file, const Object& field, const std::optiona
     return map;
 }
 
-// --- writing ---
+// The functions below write files.
 
 void add_number(std::string& bytes, const char* name, std::int32_t value) {
     bytes += fmt::format("{}{}i", name, '\0');
@@ -240,7 +240,7 @@ SurfaceFile parse_gwy(std::string_view bytes, const std::filesystem::path& path)
     if (kind != "GwyContainer")
         file.fail(gwy_magic.size(), "object", plain_line(kind.substr(0, 40)), "GwyContainer");
     const Object container(file, contents);
-    // "/0/data", by their numbers
+    // The channels "/0/data", ..., keyed by number.
     std::map<int, std::string> channels;
     for (const auto& [name, component] : container.components())
         if (name.starts_with('/') && name.ends_with("/data"))

@@ -21,10 +21,10 @@
 namespace vkfv::surface {
 namespace {
 
-// Of the text that height_map_bytes() begins an image's description with.
+// The first and the last key of the text with which height_map_bytes() begins an image's description.
 constexpr std::string_view height_image_title = "vkfv height map", last_grid_key = "pitch_y_mm=";
 
-// The value of "key=value" on a line of its own.
+// The value of a line "key=value".
 double described_number(const std::filesystem::path& path, std::string_view description, std::string_view key) {
     const std::string label = fmt::format("\n{}=", key);
     const auto at = description.find(label);
@@ -41,7 +41,7 @@ double described_number(const std::filesystem::path& path, std::string_view desc
     return value;
 }
 
-// Of an image whose description is the one that height_map_bytes() wrote.
+// The height map of an image whose description height_map_bytes() wrote.
 HeightMap height_map_of(const images::DescribedImage& image, const std::filesystem::path& path) {
     HeightMap map;
     map.x0 = described_number(path, image.description, "x0_mm");
@@ -59,7 +59,7 @@ HeightMap height_map_of(const images::DescribedImage& image, const std::filesyst
     return map;
 }
 
-// The scale that ImageJ's description states for a map of heights: lengths in mm, and heights by offset + gain value.
+// The scale stated in ImageJ's description of a height map: lengths in mm, and heights as offset + gain * value.
 struct Calibration {
     std::optional<double> pitch_x{}, pitch_y{}, unit{};
     double offset = 0, gain = 1;
@@ -84,7 +84,7 @@ Calibration calibration_of(const images::DescribedImage& image, const std::files
         result.pitch_x = *along_x / image.columns_per_unit;
         result.pitch_y = *along_y / image.rows_per_unit;
     }
-    // Values that are calibrated have a unit of their own; others are lengths in that of the plane.
+    // Calibrated values have a unit of their own; others are lengths in that of the plane.
     result.unit = value_of("vunit").empty() ? along_x : mm_per_unit(value_of("vunit"));
     if (const std::string_view function = value_of("cf"); !function.empty()) {
         constexpr std::string_view straight_line = "0", none = "20";

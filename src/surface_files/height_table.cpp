@@ -19,14 +19,15 @@ namespace vkfv::surface {
 namespace {
 
 constexpr std::string_view table_title = "# vkfv heights in um";
-constexpr std::size_t title_lines = 5; // with the scale; provenance follows, whose text may look like either
+constexpr std::size_t title_lines = 5; // with the scale; provenance follows, whose text may look like a scale too
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool is_own(const std::vector<std::string_view>& header) {
     return !header.empty() && header.front().starts_with(table_title);
 }
 
-// The header that height_table() writes. Lines of provenance follow it, whose text may look like any other header.
+// Reads the header that height_table() writes. Lines of provenance follow it, whose text may look like any other
+// header.
 TableHeader own_header(std::span<const std::string_view> lines) {
     TableHeader header;
     header.unit = mm_per_um;
@@ -44,7 +45,7 @@ TableHeader own_header(std::span<const std::string_view> lines) {
     return header;
 }
 
-// An option that contradicts the file is told of, with both values.
+// Warns if an option contradicts the file, with both values.
 void warn_of_contradiction(const std::filesystem::path& path, const char* option, const std::optional<double>& given,
                            double stated, const std::string& where, SurfaceFile& result) {
     if (given && contradicts(*given, stated))
@@ -53,10 +54,10 @@ void warn_of_contradiction(const std::filesystem::path& path, const char* option
                                               stated * um_per_mm, *given * um_per_mm));
 }
 
-// Coordinates on a line of equal distances.
+// A series of equidistant coordinates.
 struct Ruler {
     double first = 0, step = 0;
-    std::uint64_t points = 0; // 0: there is none
+    std::uint64_t points = 0; // 0: the coordinates are not equidistant
     std::uint64_t index(double value) const {
         return step > 0 ? static_cast<std::uint64_t>(std::llround((value - first) / step)) : 0;
     }
@@ -69,7 +70,7 @@ Ruler ruler_of(const TableText& table, std::size_t column) {
     if (!std::ranges::all_of(places, [](double place) { return std::isfinite(place); }))
         return {};
     std::ranges::sort(places);
-    constexpr double same = 1e-3; // of a step: coordinates are rounded
+    constexpr double same = 1e-3; // in steps, as coordinates are rounded
     const double extent = places.back() - places.front();
     double step = extent;
     for (std::size_t k = 1; k < places.size(); ++k)
@@ -77,7 +78,7 @@ Ruler ruler_of(const TableText& table, std::size_t column) {
             step = std::min(step, apart);
     if (!(step > 0) || !std::isfinite(extent) || extent / step > static_cast<double>(largest_point_count))
         return {};
-    // The smallest distance is rounded most; the whole extent holds a whole number of steps.
+    // The step follows from the whole extent, because the smallest distance has the largest rounding error.
     const double count = std::round(extent / step);
     const Ruler ruler{places.front(), extent / count, static_cast<std::uint64_t>(count) + 1};
     for (const double place : places)
@@ -86,7 +87,8 @@ Ruler ruler_of(const TableText& table, std::size_t column) {
     return ruler;
 }
 
-// Of three columns; nothing where the first two make up no grid of which at least one point in `emptiness` is there.
+// The grid of three columns x, y, z; none if the first two form no grid, or if fewer than one in `emptiness` of its
+// points exist.
 std::optional<HeightMap> grid_of_points(const TableText& table, std::uint64_t emptiness) {
     if (table.columns != 3 || table.rows < 4)
         return std::nullopt;
@@ -120,8 +122,8 @@ HeightMap matrix_of(const TableText& table) {
     return map;
 }
 
-// A profile is a position and a height a line, or heights alone. The first column of a map of heights ascends evenly,
-// as positions do, only by a rare chance.
+// True for a profile: a position and a height in each line, or heights alone. The first column of a height map rarely
+// ascends evenly, as positions do.
 bool is_profile(const TableText& table) {
     constexpr std::size_t least_rows = 4, most_columns = 3;
     if (table.columns > most_columns || table.rows < least_rows)
@@ -136,7 +138,7 @@ bool is_profile(const TableText& table) {
         shortest = std::min(shortest, step);
         longest = std::max(longest, step);
     }
-    constexpr double regular = 1.5; // of positions that are rounded
+    constexpr double regular = 1.5; // ratio of steps between rounded positions
     const bool ascending = shortest > 0, descending = longest < 0;
     const double ratio = ascending ? longest / shortest : shortest / longest;
     return (ascending || descending) && (table.columns == 2 || ratio < regular);
@@ -161,7 +163,7 @@ void set_pitch(const std::filesystem::path& path, const TableHeader& header, con
     map.y0 = header.y0.value_or(0);
 }
 
-// ESRI's grids count in one unit along all axes.
+// Converts an ESRI grid, which has one unit along all axes.
 void take_cells(double unit, TableHeader& header) {
     if (!header.cells)
         return;
@@ -196,7 +198,7 @@ SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::pa
     if (own && scale.pitch && header.pitch_x)
         refuse_second_scale(path, {.pitch = scale.pitch, .unit = {}});
     const bool named = path.extension() == ".xyz" || path.extension() == ".XYZ";
-    auto points = grid_of_points(table, named ? 64 : 2); // a matrix of three columns is as good as never half a grid
+    auto points = grid_of_points(table, named ? 64 : 2); // a matrix of three columns hardly ever forms half a grid
     if (named && !points)
         file.fail({}, "x, y", fmt::format("{} lines of {} numbers", table.rows, table.columns),
                   "x, y and z of points of a regular grid", "Export the surface on a grid.");

@@ -1,4 +1,4 @@
-// The scale of files that state none themselves: images, arrays, tables of numbers.
+// The scale of files that state none: images, arrays, tables of numbers.
 #pragma once
 
 #include "surface_files/surface_file.hpp"
@@ -7,10 +7,10 @@
 
 namespace vkfv::surface {
 
-// Both parts are there and positive, or an InputError tells of all that is missing.
+// Throws an InputError that reports all missing parts unless both parts are given and positive.
 void check_scale(const std::filesystem::path& file, const ImageScale& scale);
 
-// InputError where a scale is given: the file states its own.
+// Throws InputError if a scale is given for a file that states its own.
 void refuse_second_scale(const std::filesystem::path& file, const ImageScale& scale);
 
 } // namespace vkfv::surface

@@ -14,7 +14,7 @@
 
 namespace vkfv::surface {
 
-// mm per unit; the sign for micro as UTF-8, in both of Unicode's forms, as Latin-1 and as code page 437 of DOS.
+// Units by name, in mm; the micro sign as UTF-8, in both of Unicode's forms, as Latin-1 and as code page 437 of DOS.
 inline constexpr std::array length_units = {std::pair{std::string_view("m"), 1e3},
                                             std::pair{std::string_view("cm"), 1e1},
                                             std::pair{std::string_view("mm"), 1.0},
@@ -37,7 +37,8 @@ inline std::optional<double> mm_per_unit(std::string_view name) {
     return unit == length_units.end() ? std::nullopt : std::optional(unit->second);
 }
 
-// mm; those that a writer divided by `unit` come back to the same bits (metres.hpp says why).
+// A value of a unit (mm) in mm; values that a writer divided by `unit` are restored to the same bits (metres.hpp says
+// why).
 inline double mm_from(double value, double unit) {
     const double mm = value * unit;
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -47,21 +48,21 @@ inline double mm_from(double value, double unit) {
     return mm;
 }
 
-// NaN, which means not measured, for whatever is not finite.
+// The height in mm; NaN, which means not measured, for all values that are not finite.
 inline double height_from(double value, double unit) {
     const double mm = mm_from(value, unit);
     return std::isfinite(mm) ? mm : std::numeric_limits<double>::quiet_NaN();
 }
 
-// Values of at least this size say "not measured": Surfer's 1.70141e38, the largest float, and all others that no
-// length reaches.
+// Values of at least this size mean "not measured": Surfer's 1.70141e38, the largest float, and all others beyond any
+// length.
 inline constexpr double not_measured_from = 1e37;
 
-// Heights of at least this length (mm) are not measured either: a height that was read is then below not_measured_from
-// in micrometres too, which tables are written in, and reads back; half of it keeps clear of rounding.
+// Heights of at least this length (mm) are not measured either: a height below it is also below not_measured_from in
+// micrometres, the unit of tables, and so reads back; the factor of a half keeps clear of rounding.
 inline constexpr double no_height_from = 0.5 * not_measured_from / um_per_mm;
 
-// NaN where a value of a file whose formats have no mark of their own is no height, mm otherwise.
+// The height in mm, in a format without a mark for gaps; NaN if the value is no height.
 inline double measured_height(double value, double unit) {
     const double height = height_from(value, unit);
     return std::abs(value) < not_measured_from && std::abs(height) < no_height_from
@@ -69,28 +70,28 @@ inline double measured_height(double value, double unit) {
                : std::numeric_limits<double>::quiet_NaN();
 }
 
-// Whether an option's length is so far from the one that a file states that the user should hear of it; files and users
+// True if an option's length differs so much from the one in a file that the user should be warned; files and users
 // round.
 inline bool contradicts(double given, double stated) {
     constexpr double alike = 0.01;
     return std::abs(given - stated) > alike * std::abs(stated);
 }
 
-// Whether a value is the one that a file names for points that are not measured; files round it.
+// True if a value is the file's mark for points that are not measured; files round it.
 inline bool is_mark(double value, double mark) {
     constexpr double rounding = 1e-6;
     return std::abs(value - mark) <= rounding * std::abs(mark);
 }
 
-// Gwyddion's files state the whole grid's extent, in metres.
+// The extent of the whole grid in metres, as Gwyddion's files state it.
 inline double extent_from_pitch(double pitch, int points) {
     return metres_from_mm(pitch * points);
 }
 
-// mm; what extent_from_pitch() made comes back to a pitch with the same extent.
+// The pitch in mm; one with the same extent_from_pitch() if there is one nearby.
 inline double pitch_from_extent(double metres, int points) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    constexpr int steps = 4; // of rounding, more than both operations can lose
+    constexpr int steps = 4; // steps of rounding, more than both operations can lose
     const double pitch = metres * mm_per_metre / points;
     double below = pitch, above = pitch;
     for (int k = 0; k < steps; ++k) {

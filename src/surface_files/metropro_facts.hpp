@@ -1,4 +1,4 @@
-// What MetroPro's files have in common, as bytes and as text.
+// Facts shared by MetroPro's binary and text files.
 #pragma once
 
 #include "surface_files/provenance.hpp"
@@ -10,12 +10,12 @@
 
 namespace vkfv::surface::metropro {
 
-// Steps in a wave, by the number of the phases' resolution.
+// Steps of a phase wave, indexed by the file's number for the phases' resolution.
 inline constexpr std::array resolutions = {4096, 32768, 131072};
-// Phases from here on are not measured.
+// Phases of at least this value are not measured.
 inline constexpr std::int32_t first_not_measured = 2147483640;
 
-// As xsd:dateTime; empty for a date that says nothing.
+// A date in seconds since 1970 as xsd:dateTime; empty for a date that is unknown.
 inline std::string date_after_1970(std::int32_t seconds) {
     using namespace std::chrono;
     const sys_seconds time{std::chrono::seconds(seconds)};

@@ -7,8 +7,8 @@
 namespace vkfv::surface {
 namespace {
 
-// Offsets of the header's fields, in bytes. The codes are those of the lowest and the highest point, which stand for
-// the two heights.
+// Offsets of the header's fields, in bytes. The codes of the lowest and the highest point correspond to the header's
+// two heights.
 constexpr std::string_view program = "OM_MS_";
 constexpr std::size_t lowest_code_at = 8, highest_code_at = 12, lowest_at = 16, highest_at = 24, program_at = 32,
                       date_at = 1076, date_length = 16, data_offset_at = 1352, point_bytes_at = 1356, columns_at = 1368,
@@ -51,7 +51,7 @@ SurfaceFile parse_nms(std::string_view bytes, const std::filesystem::path& path)
             result.map.height(column, row) =
                 lowest + step * (static_cast<double>(element<std::uint16_t>(points, index)) - lowest_code);
     result.provenance.manufacturer = "NanoFocus";
-    // "2022-02-09T13:25"
+    // The file's date has the form "2022-02-09T13:25", without seconds.
     result.provenance.date = known_date(plain_line(file.bytes(date_at, date_length, "date")) + ":00");
     return result;
 }

@@ -16,7 +16,7 @@ constexpr std::string_view npy_magic = "\x93NUMPY";
 constexpr std::size_t major_at = 6, length_at = 8, npy_alignment = 64;
 constexpr std::string_view blanks = " \t\n";
 
-// The text behind "'key':" of the header, which is a dictionary as Python writes it.
+// The text behind "'key':" in the header, a dictionary in Python's notation.
 std::string_view value_of(const ByteReader& file, std::string_view header, const char* key) {
     for (const char quote : {'\'', '"'}) {
         const std::string name = fmt::format("{}{}{}", quote, key, quote);
@@ -37,7 +37,7 @@ struct Shape {
     std::uint64_t rows, columns;
 };
 
-// One map: lengths of 1 besides its two are of no meaning.
+// The shape of a map: two lengths, besides any lengths of 1, which are ignored.
 Shape shape_of(const ByteReader& file, std::string_view text) {
     const auto end = text.find(')');
     std::vector<std::uint64_t> lengths;
@@ -47,7 +47,7 @@ Shape shape_of(const ByteReader& file, std::string_view text) {
         const std::string_view length = text.substr(at, comma - at);
         at = comma + 1;
         if (length.find_first_not_of(blanks) == std::string_view::npos)
-            continue; // a comma at the end is Python's too
+            continue; // Python's notation allows a comma at the end
         const auto value = number_in<std::uint64_t>(length);
         good = value.has_value();
         lengths.push_back(value.value_or(0));
@@ -63,12 +63,12 @@ Shape shape_of(const ByteReader& file, std::string_view text) {
 
 struct Element {
     char kind;         // 'f', 'i' or 'u'
-    std::size_t bytes; // of one
-    bool swapped;      // big-endian
+    std::size_t bytes; // bytes of an element
+    bool swapped;      // true for big-endian
 };
 
 Element element_of(const ByteReader& file, std::string_view text) {
-    const std::string_view name = text.substr(0, std::min<std::size_t>(text.size(), 5)); // '<f8'
+    const std::string_view name = text.substr(0, std::min<std::size_t>(text.size(), 5)); // for example '<f8'
     const bool order = name.size() == 5 && std::string_view("<>|=").find(name[1]) != std::string_view::npos;
     if (order && std::string_view("fiu").find(name[2]) != std::string_view::npos && (name[4] == '\'' || name[4] == '"'))
         for (const std::size_t bytes : {1, 2, 4, 8})
@@ -87,7 +87,7 @@ double value_at(std::string_view points, std::size_t index, bool swapped) {
     return static_cast<double>(std::bit_cast<Stored>(bytes));
 }
 
-// IEEE 754's binary16.
+// The value of an element in IEEE 754's binary16.
 double half_at(std::string_view points, std::size_t index, bool swapped) {
     const auto bits = static_cast<std::uint16_t>(value_at<std::uint16_t>(points, index, swapped));
     const int exponent = bits >> 10 & 0x1f, fraction = bits & 0x3ff;
@@ -157,7 +157,7 @@ SurfaceFile parse_npy(std::string_view bytes, const std::filesystem::path& path,
 
 namespace {
 
-// Up to the first value. type: as NumPy names it; shape: numbers with commas.
+// The bytes before the first value. type: NumPy's name; shape: numbers with commas.
 std::string header_bytes(const char* type, const std::string& shape) {
     std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
     const std::size_t fixed = length_at + sizeof(std::uint16_t);

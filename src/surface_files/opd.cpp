@@ -10,11 +10,11 @@
 namespace vkfv::surface {
 namespace {
 
-// A directory of blocks of 24 bytes: name (16), type (int16), length (uint32), flags (uint16); their contents follow it
-// in the same order.
+// The file begins with a directory of entries of 24 bytes: name (16), type (int16), length (uint32), flags (uint16);
+// the contents of the blocks follow in the same order.
 constexpr std::string_view opd_magic("\x01\0Directory", 11);
 constexpr std::size_t directory_at = 2, block_length = 24, name_length = 16, length_at = 18;
-constexpr std::int16_t bad_integer = 32766; // and what is beyond, as the negative end
+constexpr std::int16_t bad_integer = 32766; // this and larger values are bad, as is the negative end
 constexpr float bad_float = 1e38f;
 
 struct Block {
@@ -60,7 +60,7 @@ class Blocks {
     std::map<std::string, Block> blocks_;
 };
 
-// By columns from the lowest x, each from the lowest y, as rows are here.
+// Reads heights stored by columns from the lowest x, each from the lowest y.
 void read_opd_heights(std::string_view points, std::size_t element_bytes, double step, Grid<double>& heights) {
     std::size_t index = 0;
     for (int column = 0; column < heights.columns; ++column)
@@ -68,7 +68,7 @@ void read_opd_heights(std::string_view points, std::size_t element_bytes, double
             double value = 0;
             bool measured = true;
             if (element_bytes == sizeof(std::uint8_t)) {
-                value = element<std::uint8_t>(points, index); // no value of a byte means that nothing was measured
+                value = element<std::uint8_t>(points, index); // byte values have no mark for gaps
             } else if (element_bytes == sizeof(std::int16_t)) {
                 const auto stored = element<std::int16_t>(points, index);
                 measured = stored < bad_integer && stored > std::numeric_limits<std::int16_t>::min();
@@ -82,7 +82,7 @@ void read_opd_heights(std::string_view points, std::size_t element_bytes, double
         }
 }
 
-// Three whole numbers with `separator` between them; -1 for one that is missing or no number.
+// Three whole numbers separated by `separator`; -1 for one that is missing or no number.
 std::array<int, 3> numbers_between(std::string_view text, char separator) {
     std::array<int, 3> numbers{};
     for (int& number : numbers) {
@@ -93,7 +93,7 @@ std::array<int, 3> numbers_between(std::string_view text, char separator) {
     return numbers;
 }
 
-// The blocks have "10/26/2009", month first, and "11:16:55"; Vision64 leaves zeros at the beginning out.
+// The date of the blocks "10/26/2009", month first, and "11:16:55"; Vision64 omits leading zeros.
 std::string date_of_blocks(const Blocks& blocks) {
     const std::string day = blocks.text("Date"), time = blocks.text("Time");
     const auto [month, day_of_month, year] = numbers_between(day, '/');
@@ -135,7 +135,7 @@ SurfaceFile parse_opd(std::string_view bytes, const std::filesystem::path& path)
     result.map.pitch_y = *pixel * blocks.number<float>("Aspect").value_or(1);
     file.check_spacing(result.map.pitch_x, "Pixel_size");
     file.check_spacing(result.map.pitch_y, "Aspect");
-    // Values are of waves by Mult; the wavelength is in nm.
+    // Values are in waves times Mult; the wavelength is in nm.
     const double step = *wavelength * mm_per_nm / blocks.number<std::int16_t>("Mult").value_or(1);
     if (!std::isfinite(step) || step == 0)
         file.fail({}, "Wavelength, Mult", fmt::format("{}", step), "a step of heights");

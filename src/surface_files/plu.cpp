@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 7> days = {"Mon", "Tue", "Wed", "Thu", "F
 constexpr std::array<std::string_view, 12> months = {"Jan", "Feb", "Mar", "Apr", "May", "Jun",
                                                      "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
 
-// "Mon Apr 19 11:40:13 2021"; nothing for what is no date.
+// Parses a date such as "Mon Apr 19 11:40:13 2021"; none if the text is no date.
 std::optional<DateTime> date_in(std::string_view bytes) {
     constexpr std::size_t length = 24;
     if (bytes.size() < length || std::ranges::find(days, bytes.substr(0, 3)) == days.end())

@@ -110,7 +110,7 @@ std::string source_date() {
     const std::string_view text = variable ? variable : "";
     std::int64_t seconds = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-    constexpr std::int64_t last = 253402300799; // of the year 9999
+    constexpr std::int64_t last = 253402300799; // end of the year 9999
     if (error != std::errc() || end != text.data() + text.size() || seconds < 0 || seconds > last) {
         return {};
     }

@@ -1,4 +1,4 @@
-// Where a surface comes from: what the metadata of a surface file say beside the heights.
+// The provenance of a surface: the metadata in a surface file besides the heights.
 #pragma once
 
 #include <string>
@@ -6,25 +6,25 @@
 
 namespace vkfv::surface {
 
-// Empty means not known.
+// The metadata of a surface; empty members are unknown.
 struct Provenance {
     std::string creator{};                                    // program or person
-    std::string manufacturer{}, model{}, serial{}, version{}; // of the instrument
-    std::string date{};    // of the measurement, xsd:dateTime ("2026-01-31T12:00:00Z")
-    std::string comment{}; // lines
+    std::string manufacturer{}, model{}, serial{}, version{}; // names of the instrument
+    std::string date{};    // date of the measurement, xsd:dateTime ("2026-01-31T12:00:00Z")
+    std::string comment{}; // may have several lines
 
     bool operator==(const Provenance&) const = default;
 };
 
-// Lines "key=value" of what is known, the comment last; for formats that have one text for all of it.
+// The known members as lines "key=value", the comment last; for formats with a single text for all of them.
 std::string provenance_text(const Provenance& provenance);
-// Reads such lines wherever they start in `text`. In a text without them all is comment.
+// Parses such lines wherever they start in `text`. A text without them becomes the comment.
 Provenance parse_provenance(std::string_view text);
 
-// What every format can hold: other characters than printable ASCII become "?", white space one blank, none at the
-// ends.
+// Reduces a text to one line that every format can hold: characters other than printable ASCII become "?", white space
+// becomes one blank, blanks at the ends are removed.
 std::string plain_line(std::string_view text);
-// The same of several lines.
+// Applies plain_line() to each line of a text.
 std::string plain_lines(std::string_view text);
 
 // Parts of an xsd:dateTime without its zone and fractions of a second.
@@ -32,15 +32,15 @@ struct DateTime {
     int year = 1970, month = 1, day = 1, hour = 0, minute = 0, second = 0;
 
     bool operator==(const DateTime&) const = default;
-    bool valid() const;       // years from 1 to 9999
-    std::string text() const; // as xsd:dateTime, in UTC
+    bool valid() const;       // also false for years outside 1 to 9999
+    std::string text() const; // xsd:dateTime in UTC
 };
-// What formats that cannot leave the date out get for one that is unknown or damaged: 1970-01-01T00:00:00.
+// Parses a date for formats that cannot omit it; an unknown or damaged date becomes 1970-01-01T00:00:00.
 DateTime date_time(std::string_view text);
-// The date in the environment variable SOURCE_DATE_EPOCH, seconds since 1970 in UTC, which makes results the same
-// whenever they are made; empty without one, and for one that is no such number.
+// The date in the environment variable SOURCE_DATE_EPOCH, seconds since 1970 in UTC, which makes results reproducible
+// at any time; empty if it is unset or no such number.
 std::string source_date();
-// The same as a text, which is empty for that date.
+// The date as text; empty for 1970-01-01T00:00:00, which means unknown.
 std::string known_date(std::string_view text);
 
 } // namespace vkfv::surface

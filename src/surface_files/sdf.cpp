@@ -12,7 +12,7 @@ namespace vkfv::surface {
 namespace {
 
 constexpr std::string_view binary_magic = "bISO-1.0", text_magic = "aISO-1.0";
-// Before ISO 25178-71 the same header had the names of the BCR's report EUR 15178 and of the NPL's softgauges.
+// Before ISO 25178-71 the same header had the magic words of BCR's report EUR 15178 and of NPL's softgauges.
 constexpr std::array binary_magics = {binary_magic, std::string_view("bBCR-1.0")};
 constexpr std::array text_magics = {text_magic, std::string_view("aBCR-1.0"), std::string_view("aBCR-0.0"),
                                     std::string_view("aNPL-1.0")};
@@ -22,7 +22,7 @@ constexpr std::size_t manufacturer_at = 8, manufacturer_length = 10, creation_at
 constexpr int double_type = 7;
 constexpr std::string_view x0_key = "x0_mm=", y0_key = "y0_mm=";
 
-// "DDMMYYYYHHMM" to xsd:dateTime; nothing for what is no date.
+// Converts "DDMMYYYYHHMM" to xsd:dateTime; empty if the digits are no date.
 std::string date_from(std::string_view digits) {
     if (digits.size() < date_length)
         return {};
@@ -59,8 +59,8 @@ void read_sdf_heights(std::string_view points, double scale, Grid<double>& heigh
         for (int column = 0; column < heights.columns; ++column, ++index) {
             using Limits = std::numeric_limits<Stored>;
             const Stored value = element<Stored>(points, index);
-            // Integers of several bytes have a value for points that were not measured: the lowest of a signed type,
-            // the largest of an unsigned one.
+            // Integers of several bytes have a mark for points that were not measured: the lowest value of a signed
+            // type, the largest of an unsigned one.
             const bool gap = Limits::is_integer && sizeof(Stored) > 1 &&
                              value == (Limits::is_signed ? Limits::min() : Limits::max());
             heights(column, row) =
@@ -134,7 +134,7 @@ SurfaceFile parse_text(const ByteReader& file, std::string_view text) {
     file.check_spacing(y_scale, "Yscale");
     check_scale(file, z_scale, {});
     check_type(file, number("Compression", 0), number("DataType", 0), number("CheckType", 0), {});
-    // A digit and a blank a point are the least.
+    // Each point takes at least a digit and a blank.
     if (2 * columns * rows > text.size() - at + 1)
         file.fail(at, "heights", fmt::format("{} bytes", text.size() - at),
                   fmt::format("{} x {} heights", columns, rows));
@@ -157,7 +157,7 @@ SurfaceFile parse_text(const ByteReader& file, std::string_view text) {
                 value ? height_from_metres(*value * z_scale) : std::numeric_limits<double>::quiet_NaN();
         }
 
-    // The third section is free text between stars; ours begins with the position.
+    // The third section is free text between stars; in files of vkfv it begins with the position.
     std::string_view trailer = text.substr(at);
     const auto star = trailer.find('*');
     trailer = star == std::string_view::npos ? std::string_view() : trailer.substr(star + 1);
@@ -216,8 +216,8 @@ std::string sdf_bytes(const HeightMap& map, const Provenance& provenance) {
     append(bytes, static_cast<std::uint16_t>(map.rows()));
     append(bytes, metres_from_mm(map.pitch_x));
     append(bytes, metres_from_mm(map.pitch_y));
-    append(bytes, 1.0); // Zscale
-    append(bytes, 0.0); // Zresolution: not known
+    append(bytes, 1.0); // value of Zscale
+    append(bytes, 0.0); // value of Zresolution: not known
     append(bytes, std::uint8_t{0});
     append(bytes, std::uint8_t{double_type});
     append(bytes, std::uint8_t{0});
@@ -232,7 +232,7 @@ std::string sdf_bytes(const HeightMap& map, const Provenance& provenance) {
 
 std::string sdf_text(const HeightMap& map, const Provenance& provenance) {
     check_fits(map);
-    const auto without_stars = [](std::string line) { // one would end the section
+    const auto without_stars = [](std::string line) { // a star would end the section
         std::ranges::replace(line, '*', '?');
         return line;
     };

@@ -25,8 +25,8 @@ constexpr std::size_t object_count_at = 14, version_at = 16, type_at = 18, objec
                       private_length_at = 336, x0_at = 466, y0_at = 470, z0_at = 474, header_size = 512;
 constexpr std::size_t name_length = 30, axis_length = 16;
 constexpr std::int16_t surface_type = 2;
-constexpr std::int16_t profile_type = 1; // of surfaces too as Gwyddion 2.62 exports them
-constexpr double deflate_ratio = 1032;   // zlib's largest: 258 bytes by two bits
+constexpr std::int16_t profile_type = 1; // also that of surfaces exported by Gwyddion 2.62
+constexpr double deflate_ratio = 1032;   // zlib's largest ratio: 258 bytes from two bits
 
 double unit_at(const ByteReader& file, std::size_t offset) {
     std::string_view text = file.bytes(offset, axis_length, "unit");
@@ -79,8 +79,8 @@ void read_sur_heights(std::string_view points, std::int64_t not_measured, double
         }
 }
 
-// Applies the header's inversion as Gwyddion 2.62 and SurfaceTopography do: each of 1, 2 and 3 negates the heights, 2
-// exchanges left and right besides, and 3 the lines' order.
+// Applies the header's inversion as Gwyddion 2.62 and SurfaceTopography do: 1, 2 and 3 negate the heights, 2 also
+// exchanges left and right, and 3 also reverses the order of the lines.
 void invert(std::int16_t inversion, Grid<double>& heights) {
     constexpr std::int16_t about_y = 2, about_x = 3;
     if (inversion < 1 || inversion > about_x)
@@ -98,8 +98,8 @@ void invert(std::int16_t inversion, Grid<double>& heights) {
             std::swap_ranges(row_at(row), row_at(row + 1), row_at(heights.rows - 1 - row));
 }
 
-// Of steps of 2^exponent mm, so that the largest height takes up 30 bits, also after rounding. RunError where heights,
-// pitches or positions are none that the format can hold.
+// The exponent of the step 2^exponent mm in which the largest height takes up 30 bits, also after rounding. RunError if
+// the format cannot hold the heights, pitches or positions.
 int exponent_of_steps(const HeightMap& map) {
     constexpr int height_bits = 30, smallest_exponent = -120, largest_exponent = 90;
     double largest = 0;
@@ -107,7 +107,7 @@ int exponent_of_steps(const HeightMap& map) {
         if (std::isfinite(height))
             largest = std::max(largest, std::abs(height));
     int exponent = largest < std::ldexp(1.0, smallest_exponent)
-                       ? -height_bits // all are 0 or as good as 0
+                       ? -height_bits // all heights are 0 or negligible
                        : std::max(std::ilogb(largest) + 1 - height_bits, smallest_exponent);
     if (std::nearbyint(std::ldexp(largest, -exponent)) >= std::ldexp(1.0, height_bits))
         ++exponent;
@@ -174,7 +174,7 @@ SurfaceFile parse_sur(std::string_view bytes, const std::filesystem::path& path)
         points = unpacked_points;
     } else
         points = file.bytes(data, size, "points");
-    // Of points that are all measured none has this value.
+    // If all points are measured, no value marks a gap; this one never occurs.
     const std::int64_t not_measured = file.at<std::int16_t>(special_points_at, "special points") == 1
                                           ? std::int64_t{file.at<std::int32_t>(z_min_at, "lowest point")} - 2
                                           : std::numeric_limits<std::int64_t>::min();
@@ -201,7 +201,8 @@ std::string sur_bytes(const HeightMap& map, const Provenance& provenance) {
     const int exponent = exponent_of_steps(map);
     std::vector<std::int32_t> points;
     points.reserve(map.height.values.size());
-    constexpr std::int32_t gap = std::numeric_limits<std::int32_t>::max(); // until the lowest point is known
+    // A placeholder until the lowest point is known.
+    constexpr std::int32_t gap = std::numeric_limits<std::int32_t>::max();
     std::int32_t lowest = 0, highest = 0;
     bool first = true, gaps = false;
     for (int row = map.rows() - 1; row >= 0; --row)
@@ -219,7 +220,7 @@ std::string sur_bytes(const HeightMap& map, const Provenance& provenance) {
         }
     std::ranges::replace(points, gap, lowest - 2);
 
-    // Cut and put in order again, since a cut may end in white space.
+    // The comment is cut and normalized again, since a cut may end in white space.
     constexpr std::size_t longest_comment = std::numeric_limits<std::int16_t>::max() - 1;
     const std::string comment =
         provenance_text(parse_provenance(provenance_text(provenance).substr(0, longest_comment)));

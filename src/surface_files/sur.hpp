@@ -10,11 +10,11 @@ namespace vkfv::surface {
 
 bool looks_like_sur(std::string_view bytes);
 
-// A single surface of 16- or 32-bit points, packed by zlib or not, with z in a unit of length. Throws InputError.
+// Reads a single surface of 16- or 32-bit points, packed by zlib or not, with z in a unit of length. Throws InputError.
 SurfaceFile parse_sur(std::string_view bytes, const std::filesystem::path& file);
 
-// 32-bit points in steps of a power of two of mm, so that what is read back is written the same again. RunError for
-// heights beyond what the format's floats can scale.
+// Writes 32-bit points in steps of a power of two of mm, so that a file that is read and written again has the same
+// points. RunError for heights beyond the range of the format's floats.
 std::string sur_bytes(const HeightMap& map, const Provenance& provenance);
 
 } // namespace vkfv::surface

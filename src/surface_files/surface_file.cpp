@@ -27,14 +27,14 @@
 namespace vkfv::surface {
 namespace {
 
-// Lower case.
+// The file's name in lower case.
 std::string name_of(const std::filesystem::path& path) {
     std::string name = path.filename().string();
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
     return name;
 }
 
-// Files that state their own scale.
+// The formats that state their own scale.
 struct Format {
     bool (*looks_like)(std::string_view bytes);
     SurfaceFile (*parse)(std::string_view bytes, const std::filesystem::path& file);
@@ -43,7 +43,7 @@ constexpr Format formats[] = {
     {looks_like_sur, parse_sur},           {looks_like_sdf, parse_sdf}, {looks_like_al3d, parse_al3d},
     {looks_like_gsf, parse_gsf},           {looks_like_gwy, parse_gwy}, {looks_like_opd, parse_opd},
     {looks_like_metropro, parse_metropro}, {looks_like_nms, parse_nms}, {looks_like_plu, parse_plu}};
-// Those that need one.
+// The formats that may need a scale.
 struct UnscaledFormat {
     bool (*looks_like)(std::string_view bytes);
     SurfaceFile (*parse)(std::string_view bytes, const std::filesystem::path& file, const ImageScale& scale);
@@ -52,7 +52,7 @@ constexpr UnscaledFormat unscaled_formats[] = {{looks_like_height_image, parse_h
                                                {looks_like_npy, parse_npy},
                                                {looks_like_zygo_text, parse_zygo_text}};
 
-// Null: none that is known.
+// The name of a picture format by its first bytes; null if unknown.
 const char* kind_of_picture(std::string_view bytes) {
     return bytes.starts_with("\x89PNG") ? "PNG" : bytes.starts_with("\xff\xd8\xff") ? "JPEG" : nullptr;
 }
@@ -87,7 +87,7 @@ SurfaceFile parse_surface(std::string_view bytes, const std::filesystem::path& p
                 "Export the surface in one of these formats.");
 }
 
-// The value below which this share of the values lies. Changes their order.
+// The value below which this share of the values lies. Changes the order of the values.
 double quantile(std::vector<double>& values, double share) {
     const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::ranges::nth_element(values, place);
@@ -96,7 +96,7 @@ double quantile(std::vector<double>& values, double share) {
 
 void warn_of_implausible_heights(const std::filesystem::path& path, SurfaceFile& file) {
     constexpr std::size_t most_looked_at = std::size_t{1} << 22;
-    constexpr double most_ranges = 1e4, most_length = 1000; // mm
+    constexpr double most_ranges = 1e4, most_length = 1000; // in ranges of heights; mm
     const auto& all = file.map.height.values;
     const std::size_t every = all.size() / most_looked_at + 1;
     std::vector<double> some;

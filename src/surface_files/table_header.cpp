@@ -16,7 +16,7 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
     return std::ranges::find(words, word) != words.end();
 }
 
-// "NODATA_value" and "No data  value" are one key.
+// A normalized key: "NODATA_value" and "No data  value" are equal.
 std::string plain_key(std::string_view text) {
     std::string key;
     for (const char c : text) {
@@ -31,7 +31,7 @@ std::string plain_key(std::string_view text) {
     return key;
 }
 
-// "x [mm]", "z (um)", "z <um>" or "Z/nm"; none without a unit of length.
+// The unit in a column name such as "x [mm]", "z (um)", "z <um>" or "Z/nm"; none without a unit of length.
 std::optional<double> unit_in_name(std::string_view name) {
     for (const std::string_view brackets : {"[]", "()", "<>"}) {
         const auto open = name.rfind(brackets[0]);
@@ -43,7 +43,7 @@ std::optional<double> unit_in_name(std::string_view name) {
     return slash == std::string_view::npos ? std::nullopt : mm_per_unit(bare(name.substr(slash + 1)));
 }
 
-// A key, and what stands behind it: "XY Calibration","2000","nm", "cellsize 2.0" or "# Width: 10 um".
+// A key with its values, such as "XY Calibration","2000","nm", "cellsize 2.0" or "# Width: 10 um".
 struct Statement {
     std::string key;
     std::vector<std::string_view> values;
@@ -125,7 +125,8 @@ void take(const Statement& statement, TableHeader& header) {
     else if (is_one_of(key, {"unit", "units", "height unit", "z unit", "value unit", "value units", "einheit"}))
         first(header.unit, statement.unit());
     else if (key.starts_with("height conversion factor")) {
-        // "height conversion factor (-> m) = 1e-9": what a value of one is, in the unit behind the arrow.
+        // In "height conversion factor (-> m) = 1e-9" the number is the height of the value 1, in the unit behind the
+        // arrow.
         const auto arrow = key.find('>'), close = key.rfind(')');
         if (arrow != std::string::npos && close != std::string::npos && arrow < close)
             if (const auto factor = statement.number(),
@@ -135,7 +136,7 @@ void take(const Statement& statement, TableHeader& header) {
     }
 }
 
-// Extents whose unit is that of their axis, or of the heights.
+// Converts extents from the unit of their axis, or else of the heights.
 void take_lengths(TableHeader& header) {
     const auto take_length = [&](std::optional<double>& extent, const std::optional<double>& length,
                                  const std::optional<double>& own) {
@@ -147,7 +148,7 @@ void take_lengths(TableHeader& header) {
     take_length(header.height, header.y_length, header.y_unit);
 }
 
-// The names in "x (um) y (um) z (um)", each with its brackets.
+// Splits names such as "x (um) y (um) z (um)" behind each bracket.
 std::vector<std::string_view> cells_with_brackets(std::string_view names) {
     std::vector<std::string_view> cells;
     for (auto end = names.find_first_of(")]"); end != std::string_view::npos; end = names.find_first_of(")]")) {
@@ -177,7 +178,7 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator) {
         line.remove_prefix(std::min(end + 1, line.size()));
         if (separator == ' ')
             line = bare(line);
-        // A separator at the line's end closes the last cell.
+        // A separator at the line's end opens no further cell.
         more = more && !line.empty();
     }
     return cells;
@@ -188,11 +189,11 @@ TableHeader table_header(std::span<const std::string_view> lines, std::size_t co
     for (const std::string_view line : lines)
         take(statement_of(line), header);
     take_lengths(header);
-    // The names of columns stand on the last line that has a unit for some of them; a matrix has one name or none.
+    // The names of columns are on the last line that states a unit for some of them; a matrix has one name or none.
     const auto take_names = [&](std::string_view names, const std::vector<std::string_view>& cells, std::size_t count) {
         if (cells.size() != count)
             return false;
-        // A line below the names may have the units alone.
+        // A line below the names may contain only the units.
         const bool alone =
             std::ranges::all_of(cells, [](std::string_view cell) { return mm_per_unit(cell).has_value(); });
         std::array<std::optional<double>, 3> units;

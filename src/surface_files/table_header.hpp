@@ -1,5 +1,4 @@
-// The statements that the lines above a table of numbers make about it: units, pitches, the mark of points that were
-// not measured.
+// Parses the lines above a table of numbers: units, pitches, the mark of points that were not measured.
 #pragma once
 
 #include <array>
@@ -11,28 +10,28 @@
 
 namespace vkfv::surface {
 
-// Lengths in mm; nothing where the header does not say it.
+// The statements of a header, lengths in mm; members are none where it states nothing.
 struct TableHeader {
-    std::optional<double> unit;             // of heights
+    std::optional<double> unit;             // unit of heights, mm
     std::optional<double> pitch_x, pitch_y; // between points
-    std::optional<double> cells;            // the same, in the unit of the heights (ESRI's grids)
-    std::optional<double> width, height;    // of the whole grid
-    // SPIP states the extents of the whole grid as numbers, whose unit is that of their axis, else of the heights.
+    std::optional<double> cells;            // pitch in the unit of the heights (ESRI grids)
+    std::optional<double> width, height;    // extent of the whole grid
+    // Extents of the whole grid without a unit (SPIP): the unit is that of their axis, else of the heights.
     std::optional<double> x_length, y_length;
     std::optional<double> x_unit, y_unit; // mm
-    std::optional<double> x0, y0;         // of the point with the lowest x and y
-    // The place of that point, or of the corner of its cell, in the unit of the heights, as ESRI's grids state it.
+    std::optional<double> x0, y0;         // position of the point with the lowest x and y
+    // The position of that point, or of the corner of its cell, in the unit of the heights (ESRI grids).
     std::optional<double> x_centre, y_centre, x_corner, y_corner;
-    std::optional<double> not_measured;                  // the value that says so
-    std::array<std::optional<double>, 3> column_units{}; // of the first three columns, from a line of their names
-    std::optional<std::string> column_names{};           // that line
+    std::optional<double> not_measured;                  // value that marks a gap
+    std::array<std::optional<double>, 3> column_units{}; // for the first three columns, from the line of their names
+    std::optional<std::string> column_names{};           // the line of the columns' names
 };
 
-// A line's cells, as they stand between the separators and without quotes. separator: a blank means any number of
-// blanks and tabs; a separator between quotes is part of the cell.
+// The cells of a line, without separators and quotes. separator: a blank stands for any number of blanks and tabs; a
+// separator between quotes is part of the cell.
 std::vector<std::string_view> cells_of(std::string_view line, char separator);
 
-// columns, separator: of the lines of numbers behind the header.
+// Parses the header's lines. columns, separator: those of the lines of numbers that follow.
 TableHeader table_header(std::span<const std::string_view> lines, std::size_t columns, char separator);
 
 } // namespace vkfv::surface

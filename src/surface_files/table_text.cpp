@@ -11,9 +11,9 @@
 namespace vkfv::surface {
 namespace {
 
-// How numbers stand in a line.
+// The notation of numbers in a line.
 struct Style {
-    char separator = ' '; // blanks: any number of blanks and tabs
+    char separator = ' '; // a blank: any number of blanks and tabs
     bool decimal_comma = false;
 };
 
@@ -25,8 +25,8 @@ std::optional<double> number_of(std::string_view cell, const Style& style) {
     return number_in<double>(text);
 }
 
-// The style of a line of numbers, whose quoted parts are left out: a semicolon or a tab separates in any case, and a
-// comma is a decimal one then; a comma that a digit follows at once is a decimal one if blanks separate.
+// The notation of a line of numbers without its quoted parts. A semicolon or a tab is always the separator, and commas
+// are then decimal ones. With blanks, a comma directly followed by a digit is a decimal comma.
 Style style_outside_quotes(std::string_view line) {
     line = bare(line);
     const bool comma = line.find(',') != std::string_view::npos;
@@ -43,7 +43,7 @@ Style style_outside_quotes(std::string_view line) {
     return {' ', true};
 }
 
-// A comma between quotes is a decimal one.
+// The notation of a line; a comma between quotes is a decimal comma.
 Style style_of(std::string_view line) {
     if (line.find('"') == std::string_view::npos)
         return style_outside_quotes(line);
@@ -63,7 +63,7 @@ bool is_data(std::string_view line, const Style& style) {
     bool first = true, numbers = false, words = false;
     for (const std::string_view cell : cells_of(line, style.separator)) {
         const bool number = number_of(cell, style).has_value();
-        // A line of data may begin with a gap, which is no word of a heading.
+        // A line of data may begin with a gap, which is not a heading's word.
         const bool gap = cell.empty() || cell == "NaN" || cell == "nan" || cell == "NAN" || cell == "BAD" ||
                          cell == "Bad" || cell.find_first_not_of("*-") == std::string_view::npos;
         words = words || (first && !number && !gap);

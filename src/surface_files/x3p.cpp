@@ -27,7 +27,7 @@ constexpr std::uint64_t largest_xml = std::uint64_t{1} << 24;
 constexpr std::uint64_t largest_checksum_file = 4096;
 constexpr std::size_t md5_digits = 32;
 
-// 32 lower-case digits.
+// The MD5 sum as 32 lower-case digits.
 std::string md5_of(std::string_view bytes) {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned int length = 0;
@@ -44,8 +44,9 @@ struct Discard {
     void operator()(zip_file_t* entry) const { zip_fclose(entry); }
 };
 
-// One at a time: libzip (1.7.3, Debian 12) finds out at its first opening what a source must be capable of, and stores
-// it in two variables one after the other. A second thread that opens between the two gets a read-only archive.
+// Opens an archive under a lock: libzip (1.7.3, Debian 12) determines at its first opening which capabilities a source
+// needs, and stores them in two variables one after the other. A second thread that opens between the two gets a
+// read-only archive.
 zip_t* open_archive(zip_source_t* source, int flags, zip_error_t* error) {
     static std::mutex opening;
     const std::lock_guard lock(opening);
@@ -71,8 +72,8 @@ class Archive {
 
     bool has(const char* name) const { return zip_name_locate(archive_.get(), (folder_ + name).c_str(), 0) >= 0; }
 
-    // By its name in the folder of main.xml; nothing without such an entry. Memory grows as the data come, up to the
-    // limit, which an entry that states to be longer does not come near.
+    // The entry of this name in the folder of main.xml; none if there is no such entry. Memory grows with the data up
+    // to the limit; an entry whose stated size exceeds the limit is refused at once.
     std::optional<std::string> read(std::string name, std::uint64_t largest) const {
         if (name.starts_with("./"))
             name.erase(0, 2);
@@ -108,7 +109,7 @@ class Archive {
     }
 
   private:
-    // Some writers (x3ptools) pack the folder itself, not what is in it.
+    // Some writers (x3ptools) pack the folder itself instead of its contents.
     void find_folder() {
         if (has(xml_name))
             return;
@@ -124,10 +125,10 @@ class Archive {
 
     const ByteReader& file_;
     std::unique_ptr<zip_t, Discard> archive_;
-    std::string folder_{}; // of main.xml, with a slash at its end; empty: the root
+    std::string folder_{}; // path of main.xml's folder, ends with a slash; empty: the root
 };
 
-// Prefixes of namespaces are the writer's choice.
+// The child element of this name, with any namespace prefix, which is the writer's choice.
 pugi::xml_node child(const pugi::xml_node& parent, std::string_view name) {
     for (const pugi::xml_node node : parent.children()) {
         const std::string_view full = node.name();
@@ -147,7 +148,7 @@ class Document {
         const auto result = document_.load_buffer(xml.data(), xml.size());
         if (!result)
             file.fail({}, xml_name, fmt::format("{} at byte {}", result.description(), result.offset), "XML");
-        // Programs name the root otherwise, or without a prefix; the records tell.
+        // Programs name the root differently, or without a prefix, so it is recognized by its records.
         root_ = document_.document_element();
         if (!child(root_, "Record1") || !child(root_, "Record3"))
             file.fail({}, xml_name, "another root element", "the element ISO5436_2, with its records");
@@ -179,7 +180,7 @@ class Document {
     pugi::xml_node root_;
 };
 
-// What the parts of a file are read with.
+// The context in which the parts of a file are read.
 struct Reading {
     const ByteReader& file;
     Checksums checksums;
@@ -220,7 +221,7 @@ void read_x3p_heights(std::string_view points, std::string_view valid, double of
         }
 }
 
-// What an element says that the schema asks for and nothing is known of; pyx3p fails at an empty one.
+// The text of required elements whose value is not known; pyx3p fails at empty ones.
 constexpr const char* unknown = "unknown";
 
 std::string known_text(const pugi::xml_node& parent, const char* name) {
@@ -307,8 +308,8 @@ std::string main_xml(const HeightMap& map, const Provenance& provenance, const s
     return text.str();
 }
 
-// Whether packing makes an entry at least a tenth smaller, judged by 8 parts of it. Digits of heights hardly shrink, so
-// that the time is lost on them; places that were not measured do.
+// True if packing makes an entry at least a tenth smaller, judged by 8 parts of it. Digits of heights hardly shrink, so
+// packing them wastes time; points that were not measured do.
 bool shrinks(std::string_view content) {
     constexpr std::size_t part = 1 << 13, parts = 8;
     if (content.size() < 2 * part * parts) {
@@ -326,10 +327,10 @@ bool shrinks(std::string_view content) {
            static_cast<double>(packed) < worth * static_cast<double>(sample.size());
 }
 
-// The archive's bytes; the same entries give the same.
+// The archive's bytes, which are equal for equal entries.
 std::string zip_of(const std::vector<std::pair<const char*, std::string_view>>& entries) {
     constexpr zip_uint32_t quick = 1;
-    constexpr std::uint16_t first_day = 1 << 5 | 1; // 1980-01-01 in MS-DOS's way
+    constexpr std::uint16_t first_day = 1 << 5 | 1; // 1980-01-01 in MS-DOS' notation
     zip_error_t error;
     zip_error_init(&error);
     zip_source_t* source = zip_source_buffer_create(nullptr, 0, 0, &error);
@@ -362,7 +363,7 @@ std::string zip_of(const std::vector<std::pair<const char*, std::string_view>>& 
     return bytes;
 }
 
-// A bit a point, set where it was measured; empty: all were. Some writers (pyx3p) store a byte a point.
+// One bit per point, set if the point was measured; empty if all were. Some writers (pyx3p) store one byte per point.
 std::string valid_points(const Reading& reading, const Archive& archive, const pugi::xml_node& link,
                          std::uint64_t count) {
     const std::string name = text_of(link, "ValidPointsLink");
@@ -386,7 +387,7 @@ std::string valid_points(const Reading& reading, const Archive& archive, const p
     return *content;
 }
 
-// Rotated points have no heights over a grid; some writers state the identity.
+// Refuses rotated points, which are no heights over a grid; some writers state the identity.
 void check_rotation(const ByteReader& file, const Document& document, const pugi::xml_node& axes) {
     const auto rotation = child(axes, "Rotation");
     if (!rotation)
@@ -403,7 +404,7 @@ void check_rotation(const ByteReader& file, const Document& document, const pugi
 }
 
 struct Scale {
-    std::string type; // of the points: I, L, F or D
+    std::string type; // type of the points: I, L, F or D
     double offset, increment;
 };
 
@@ -432,8 +433,8 @@ Grid<double> linked_heights(const Reading& reading, const Archive& archive, cons
     return heights;
 }
 
-// A Datum a point: its coordinates between semicolons, z the last of them; on a grid x and y may be left out. An empty
-// one is not measured (ISO 5436-2, the schema's notes on DataListType).
+// The heights in a list of a Datum per point: its coordinates between semicolons, z the last of them; on a grid x and y
+// may be omitted. An empty Datum is not measured (ISO 5436-2, the schema's notes on DataListType).
 Grid<double> listed_heights(const ByteReader& file, const pugi::xml_node& list, const Scale& scale,
                             std::uint64_t columns, std::uint64_t rows) {
     std::uint64_t count = 0;

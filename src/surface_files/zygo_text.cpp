@@ -17,7 +17,7 @@ constexpr std::string_view points_title = "Zygo XYZ Data File", phases_title = "
 constexpr std::string_view separator = "#";
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Lines from 1 on, and the fields of one from 0 on.
+// Numbers of lines, from 1, and of the fields of a line, from 0.
 constexpr std::size_t phase_line = 4, comment_line = 5, serial_line = 6, optics_line = 8, resolution_line = 11,
                       least_header_lines = 12;
 constexpr std::size_t phase_x = 0, phase_y = 1, phase_columns = 2, phase_rows = 3;
@@ -30,7 +30,7 @@ std::string_view trimmed(std::string_view text) {
                                            : text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
 }
 
-// A text's lines, one after the other.
+// Iterates over the lines of a text.
 class Lines {
   public:
     explicit Lines(std::string_view text) : rest_(text) {}
@@ -43,7 +43,7 @@ class Lines {
         ++number_;
         return trimmed(line);
     }
-    int number() const { return number_; } // of the line that next() gave
+    int number() const { return number_; } // number of the line last returned by next()
     std::string_view rest() const { return rest_; }
 
   private:
@@ -51,7 +51,7 @@ class Lines {
     int number_ = 0;
 };
 
-// The next word of a line, which is cut off; empty: there is none.
+// The next word of a line, which is removed from the line; empty if there is none.
 std::string_view word_of(std::string_view& line) {
     line = trimmed(line);
     const std::string_view word = line.substr(0, line.find_first_of(" \t"));
@@ -118,14 +118,14 @@ Header header_of(Lines& lines, const ByteReader& file) {
                       .remedy = "Export or copy the file anew."});
 }
 
-// They stand before the phases, up to a "#".
+// Skips the intensities, which precede the phases and end with "#".
 void skip_intensities(Lines& lines) {
     auto line = lines.next();
     while (line && *line != separator)
         line = lines.next();
 }
 
-// Whole numbers up to the next "#", row by row from the highest y.
+// Reads whole numbers up to the next "#", row by row from the highest y.
 void read_phases(Lines& lines, const ByteReader& file, double step, HeightMap& map) {
     std::size_t count = 0;
     const std::size_t points = map.height.values.size();
@@ -145,7 +145,7 @@ void read_phases(Lines& lines, const ByteReader& file, double step, HeightMap& m
         fail_at(file, lines.number(), fmt::format("{} phases", count), fmt::format("{}, as line 4 says", points));
 }
 
-// x, y and a height, or "No Data" in its place, a line.
+// Reads lines of x, y and a height, or "No Data" in its place.
 void read_points(Lines& lines, const Header& header, double unit, HeightMap& map) {
     const ByteReader& file = *header.file;
     const auto x0 = header.field<std::int64_t>(phase_line, phase_x, "origin of the phases");
@@ -181,7 +181,8 @@ SurfaceFile parse_zygo_text(std::string_view bytes, const std::filesystem::path&
     const auto columns = header.field<std::uint32_t>(phase_line, phase_columns, "columns"),
                rows = header.field<std::uint32_t>(phase_line, phase_rows, "rows");
     file.check_size(columns, rows);
-    // Two bytes a number, or six a point; points may be left out.
+    // The stated size is bounded by the file's length: a phase takes at least two bytes. Lines of points may be left
+    // out, so there more points a byte are allowed.
     const std::uint64_t points = std::uint64_t{columns} * rows;
     constexpr std::uint64_t bytes_a_phase = 2, most_points_a_byte = 64;
     if (phases ? points > lines.rest().size() / bytes_a_phase + 1 : points > most_points_a_byte * lines.rest().size())

@@ -39,7 +39,7 @@ std::optional<fs::path> chosen_assets() {
     return absolute_folder(variable);
 }
 
-// The third of asset_folders(), without links. None: the program was copied without it.
+// The third of asset_folders(), with links resolved; none if the program was copied without it.
 std::optional<fs::path> installed_assets() {
     static const auto once = []() -> std::optional<fs::path> {
         const auto found = find_installed("share/vkfv");
@@ -105,7 +105,7 @@ std::vector<std::string> asset_names(const fs::path& folder, const fs::path& bas
     for (const auto& assets : asset_folders(base)) {
         for (fs::directory_iterator entry(assets / folder, code), end; !code && entry != end; entry.increment(code)) {
             const auto name = entry->path().stem().string();
-            // Those beside the working directory may be the installed ones.
+            // The installed folder may be the one beside the working directory, so names are not repeated.
             if (entry->path().extension() == ".toml" && std::ranges::find(names, name) == names.end()) {
                 names.push_back(name);
             }

@@ -1,4 +1,4 @@
-// Fingerprints of data: short ones tell one input from another, whole ones tell whether a file is the one written.
+// Digests of data: short ones distinguish inputs, whole ones verify that a file is the one written.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ struct evp_md_ctx_st;
 
 namespace vkfv {
 
-// SHA-256 (FIPS 180-4, by OpenSSL): the same on every machine.
+// SHA-256 (FIPS 180-4, by OpenSSL), equal on every machine.
 class Digest {
   public:
     Digest();
@@ -21,8 +21,8 @@ class Digest {
     Digest& add_values(std::span<const Value> values) {
         return add(std::as_bytes(values));
     }
-    std::string sha256() const; // 64 hexadecimal digits, of what was added so far
-    std::string text() const;   // the first 16 of them
+    std::string sha256() const; // 64 hexadecimal digits, of all bytes added so far
+    std::string text() const;   // the first 16 digits
 
   private:
     struct Free {

@@ -30,7 +30,7 @@ std::string reason_of(int error) {
     return std::generic_category().message(error);
 }
 
-// What a file is that is no regular one; empty: it is.
+// The kind of a file that is not regular, for messages; empty for a regular file.
 std::string kind_of(const struct stat& status) {
     switch (status.st_mode & S_IFMT) {
     case S_IFREG:
@@ -46,7 +46,7 @@ std::string kind_of(const struct stat& status) {
     }
 }
 
-// A descriptor that is closed with its scope.
+// Closes a file descriptor at the end of its scope.
 class Descriptor {
   public:
     explicit Descriptor(int number) : number_(number) {}
@@ -60,7 +60,7 @@ class Descriptor {
     int number() const { return number_; }
     bool open() const { return number_ >= 0; }
     int release() { return std::exchange(number_, -1); }
-    // False where the disk reports, at last, what it had taken before.
+    // False if the disk reports an error only now, for data that it had accepted.
     bool close() { return ::close(release()) == 0; }
 
   private:
@@ -90,7 +90,7 @@ bool write_all(int file, std::string_view bytes) {
     return true;
 }
 
-// Whether the file holds these bytes and no others.
+// True if the file holds these bytes and no others.
 bool holds(int file, std::string_view bytes) {
     struct stat status {};
     if (::fstat(file, &status) != 0 || static_cast<std::uint64_t>(status.st_size) != bytes.size()) {
@@ -111,7 +111,7 @@ bool holds(int file, std::string_view bytes) {
     return true;
 }
 
-// SHA-256 of all that the file holds; none where the disk fails, which errno tells of.
+// SHA-256 of the whole file; none if reading fails, with the reason in errno.
 std::optional<std::string> checksum(int file) {
     Digest digest;
     std::vector<char> block(std::size_t{1} << 20);
@@ -129,7 +129,8 @@ std::optional<std::string> checksum(int file) {
     }
 }
 
-// File systems that cannot sync a folder say so; their renames are as durable as they make them.
+// Syncs a folder. Errors of file systems that cannot sync folders are ignored: they make renames as durable as they
+// can.
 void sync_folder(const fs::path& folder) {
     const Descriptor file(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!file.open() || (::fsync(file.number()) != 0 && errno != EINVAL && errno != ENOTSUP)) {
@@ -150,8 +151,8 @@ bool same_file(int file, const fs::path& path) {
            open_one.st_dev == named_one.st_dev && open_one.st_ino == named_one.st_ino;
 }
 
-// The unfinished file, empty and ours alone: programs that write the same file wait here for each other. The kernel
-// ends the lock with the process.
+// Opens the unfinished file, empty and locked: programs that write the same file wait here for each other. The kernel
+// releases the lock when the process ends.
 int open_unfinished(const fs::path& beside, const fs::path& path) {
     for (;;) {
         Descriptor file(::open(beside.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
@@ -160,11 +161,11 @@ int open_unfinished(const fs::path& beside, const fs::path& path) {
         }
         while (::flock(file.number(), LOCK_EX) != 0 && errno == EINTR) {
         }
-        // Meanwhile the other one may have given it its name.
+        // The program that held the lock may have renamed the file meanwhile; then the name is opened again.
         if (same_file(file.number(), beside)) {
             struct stat status {};
             if (::fstat(file.number(), &status) == 0 && status.st_nlink > 1) {
-                ::unlink(beside.c_str()); // it is also another file, whose bytes are not ours to remove
+                ::unlink(beside.c_str()); // it has another name too, whose content must not be removed
                 continue;
             }
             if (::ftruncate(file.number(), 0) != 0) {
@@ -175,7 +176,8 @@ int open_unfinished(const fs::path& beside, const fs::path& path) {
     }
 }
 
-// Where the bytes are to be: behind links, and nothing that a rename would destroy.
+// The place of the bytes: links are resolved, and files that are not regular, which a rename would destroy, are
+// refused.
 fs::path target_of(const fs::path& path) {
     std::error_code none;
     const fs::path target = fs::is_symlink(path, none) ? fs::weakly_canonical(path, none) : path;
@@ -193,7 +195,8 @@ fs::path target_of(const fs::path& path) {
 
 constexpr std::string_view not_returned = "the disk does not return what was written";
 
-// fill: writes and syncs the unfinished file, and tells what went wrong; empty: nothing.
+// Writes a file by way of an unfinished one beside it. fill: writes and syncs the unfinished file and returns the
+// reason of a failure; empty: success.
 void replace_file(const fs::path& path, const std::function<std::string(int)>& fill) {
     const fs::path target = target_of(path);
     const fs::path beside = unfinished_path(target);
@@ -228,7 +231,7 @@ InputFile::InputFile(const fs::path& path, const FileRequest& request) : path_(p
                           .expected = request.expected,
                           .remedy = request.remedy});
     };
-    // Without waiting for a writer of a pipe.
+    // O_NONBLOCK: opening a pipe must not wait for its writer.
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (!file.open()) {
         const int error = errno;
@@ -336,7 +339,7 @@ void append_line(const fs::path& path, std::string_view line) {
     }
     if (!write_all(file.number(), std::string(line) + "\n")) {
         const int error = errno;
-        (void)!::ftruncate(file.number(), before.st_size); // no half of a line for others to read
+        (void)!::ftruncate(file.number(), before.st_size); // others must not read half a line
         fail_to_write(path, error);
     }
     if (!file.close()) {
@@ -352,9 +355,9 @@ void make_folder(const fs::path& folder) {
     fs::path whole = folder.lexically_normal();
     whole = whole.has_filename() ? whole : whole.parent_path();
     make_folder(whole.parent_path());
-    // Another program may have made it by now.
+    // mkdir() may fail because another program has made the folder meanwhile.
     if (::mkdir(whole.c_str(), 0777) != 0) {
-        const int reason = errno; // which the next call may change
+        const int reason = errno; // saved, as the next call may change errno
         if (!fs::is_directory(whole, error)) {
             fail(folder, "cannot be made", reason_of(reason == EEXIST ? ENOTDIR : reason));
         }

@@ -10,7 +10,7 @@ namespace vkfv {
 
 namespace {
 
-std::mutex readers_mutex; // of what follows and of the readers' lists
+std::mutex readers_mutex; // guards the list of readers and their own lists
 std::vector<FilesRead*> readers;
 
 FileStamp stamp_of(std::string path, const struct stat& status) {

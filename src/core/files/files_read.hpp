@@ -1,4 +1,4 @@
-// Which files a piece of work reads, so that what comes of it can be kept for as long as they stay as they are.
+// Records the files that a computation reads, so that its results can be kept as long as these files do not change.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,22 @@ struct stat;
 
 namespace vkfv {
 
-// A file as it was: whoever changes it changes one of these, the last even where the time of writing is set back.
+// The state of a file. Every change to the file alters one of these members; `changed` even if the time of modification
+// is set back.
 struct FileStamp {
-    std::string path; // absolute
+    std::string path; // absolute path
     std::uint64_t device = 0;
-    std::uint64_t number = 0; // of the file on its device
+    std::uint64_t number = 0; // inode on the device
     std::uint64_t bytes = 0;
-    std::int64_t changed = 0; // ns since 1970, content or status
+    std::int64_t changed = 0; // ns since 1970, change of content or status
 
     bool operator==(const FileStamp&) const = default;
 };
 
-// Whether the file at the path is still that one.
+// True if the file at the path has still this state.
 bool is_unchanged(const FileStamp& stamp);
 
-// The files that InputFile has opened since this was made, in whatever thread.
+// Collects the files that InputFile opens, in any thread, during the object's life.
 class FilesRead {
   public:
     FilesRead();
@@ -33,7 +34,7 @@ class FilesRead {
     FilesRead(FilesRead&&) = delete;
     FilesRead& operator=(FilesRead&&) = delete;
 
-    // Once each, in the order in which they were opened first.
+    // The files, once each, in the order in which they were first opened.
     std::vector<FileStamp> stamps() const;
 
   private:
@@ -41,7 +42,7 @@ class FilesRead {
     std::vector<FileStamp> stamps_;
 };
 
-// For InputFile. status: of the open file.
+// Called by InputFile. status: of the open file.
 void note_file_read(const std::string& path, const struct ::stat& status);
 
 } // namespace vkfv

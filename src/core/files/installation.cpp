@@ -23,12 +23,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The file that holds this code: a program, or a module that another program has loaded.
+// The file that contains this code: a program, or a module that another program has loaded.
 fs::path own_file() {
     Dl_info info{};
     link_map* map = nullptr;
     std::error_code none;
-    // Only of a program is the loader's name for it empty.
+    // The loader's name is empty for the program itself, and only for it.
     if (dladdr1(reinterpret_cast<const void*>(&own_file), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) !=
             0 &&
         map != nullptr && map->l_name != nullptr && *map->l_name != '\0') {
@@ -37,7 +37,7 @@ fs::path own_file() {
     if (fs::path program = fs::read_symlink("/proc/self/exe", none); !program.empty()) {
         return program;
     }
-    // Without /proc, in a bare chroot: the name that the program was started by.
+    // Without /proc, as in a bare chroot, the name by which the program was started serves.
     const auto* started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
     return started == nullptr ? fs::path() : fs::canonical(started, none);
 }
@@ -73,7 +73,7 @@ std::optional<fs::path> find_installed(const fs::path& relative) {
 
 std::string build_id() {
     std::string id;
-    // Of the file that holds this code: the one of whose segments one is where this function is.
+    // The callback looks for the file that contains this function in one of its segments.
     const auto look = [](dl_phdr_info* info, std::size_t, void* result) {
         const auto headers = std::span(info->dlpi_phdr, info->dlpi_phnum);
         const auto here = reinterpret_cast<std::uintptr_t>(&build_id);

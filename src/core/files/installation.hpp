@@ -1,4 +1,4 @@
-// Where the files lie that come with the program, whether it was installed, moved or only built.
+// Locates the files that come with the program, whether it was installed, moved or only built.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,16 @@
 
 namespace vkfv {
 
-// The folder and those above it, the nearest first.
+// A folder and those above it, the nearest first.
 std::vector<std::filesystem::path> with_parents(const std::filesystem::path& folder);
 
-// Beside the program or the module that this code is part of, and beside each folder above it: "lib/vkfv/x.so" of
-// /usr/bin/vkfv is /usr/lib/vkfv/x.so. None: no such file or folder. A build has links of the same names.
-// Throws RunError where it cannot be told because a folder may not be looked into.
+// Finds a file or folder beside the program or module that contains this code, or beside a folder above it:
+// "lib/vkfv/x.so" of /usr/bin/vkfv is /usr/lib/vkfv/x.so. None if there is none. Builds have links of the same names.
+// Throws RunError if a folder without read permission leaves this open.
 std::optional<std::filesystem::path> find_installed(const std::filesystem::path& relative);
 
-// What the linker made of the code that this is part of, in hexadecimal digits: another code has another. Empty if it
-// was linked without.
+// The linker's build id of this program or module, in hexadecimal digits, which differs between different code. Empty
+// if it was linked without.
 std::string build_id();
 
 } // namespace vkfv

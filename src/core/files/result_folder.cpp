@@ -23,10 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string lock_name = ".lock";
-const std::string part_lock_prefix = ".lock_"; // and the part
+const std::string part_lock_prefix = ".lock_"; // followed by the name of the part
 const std::string turn_name = ".lock_turn";
 constexpr std::size_t sum_digits = 64;
-constexpr std::string_view between = "  "; // as sha256sum writes it
+constexpr std::string_view between = "  "; // separator of sha256sum's lines
 
 std::string reason() {
     return std::generic_category().message(errno);
@@ -37,7 +37,7 @@ struct Entry {
     std::string name;
 };
 
-// A line of the list; none if it is no such line, or leads out of the folder.
+// Parses a line of the list; none if it is malformed or names a file outside the folder.
 std::optional<Entry> entry_of(const std::string& line) {
     if (line.size() <= sum_digits + between.size() || line.substr(sum_digits, between.size()) != between) {
         return std::nullopt;
@@ -49,7 +49,7 @@ std::optional<Entry> entry_of(const std::string& line) {
     return inside && hexadecimal ? std::optional(entry) : std::nullopt;
 }
 
-// Lines that are none of the list's come back as they are in `strange`.
+// The entries of the list; malformed lines are returned in `strange`.
 std::vector<Entry> entries_of(const fs::path& folder, std::vector<std::string>& strange) {
     std::vector<Entry> entries;
     std::istringstream lines(read_file(folder / checksums_name));
@@ -73,7 +73,7 @@ int open_lock(const fs::path& folder, const std::string& name) {
     return file;
 }
 
-// how: LOCK_EX or LOCK_SH; does not wait.
+// Takes a lock without waiting. how: LOCK_EX or LOCK_SH.
 int lock_folder(const fs::path& folder, const std::string& name, int how) {
     const int file = open_lock(folder, name);
     if (::flock(file, how | LOCK_NB) != 0) {
@@ -90,7 +90,7 @@ int lock_folder(const fs::path& folder, const std::string& name, int how) {
     return file;
 }
 
-// Of parts, once nobody writes any.
+// Removes the lock files of parts once no program writes any.
 void remove_part_locks(const fs::path& folder) {
     std::error_code error;
     std::vector<fs::path> locks;
@@ -119,7 +119,7 @@ ResultFolder::ResultFolder(fs::path folder, const std::string& part) : folder_(s
         remove_unfinished_files(folder_);
         std::error_code none;
         if (fs::exists(folder_ / checksums_name, none)) {
-            std::vector<std::string> strange; // --verify tells of them
+            std::vector<std::string> strange; // ignored here; --verify reports them
             for (const auto& [sum, name] : entries_of(folder_, strange)) {
                 earlier_[name] = sum;
             }
@@ -151,7 +151,7 @@ ResultFolder::Turn::~Turn() {
     ::close(lock_);
 }
 
-// A folder that is made anew would lack what was written before.
+// Throws if the folder was removed: one made anew would lack the files written before.
 void ResultFolder::require_still_there() const {
     struct stat held {};
     struct stat found {};

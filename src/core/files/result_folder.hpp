@@ -1,5 +1,4 @@
-// A folder of results: one program writes it at a time, and whoever has it can tell whether its files are those
-// written.
+// A folder of results: one program writes it at a time, and its files can be verified later.
 #pragma once
 
 #include "core/files/file.hpp"
@@ -16,26 +15,26 @@
 
 namespace vkfv {
 
-// Exit code 5: another program is writing there.
+// Another program is writing to the folder; exit code 5.
 class FolderInUse : public RunError {
   public:
     using RunError::RunError;
 };
 
-// What was written there is gone, or elsewhere.
+// The folder, or a folder in it, was removed or moved during the run.
 class FolderRemoved : public RunError {
   public:
     using RunError::RunError;
 };
 
-// Its list of checksums, which sha256sum(1) checks too.
+// The file of checksums in a folder of results, which sha256sum(1) can check too.
 inline constexpr std::string_view checksums_name = "checksums.sha256";
 
 class ResultFolder {
   public:
-    // Makes the folder, keeps it for this program as long as the object lives, also against a kill of others (the
-    // kernel ends the lock), and removes what killed programs left unfinished. part: not empty, a word: programs that
-    // each have another part of the results write here at a time. Throws FolderInUse, RunError.
+    // Makes the folder, locks it for this program during the object's life (the kernel releases the lock if the program
+    // is killed), and removes unfinished files of killed programs. part: if not empty, a word that names a part of the
+    // results: programs with different parts may write at the same time. Throws FolderInUse, RunError.
     explicit ResultFolder(std::filesystem::path folder, const std::string& part = {});
     ~ResultFolder();
     ResultFolder(const ResultFolder&) = delete;
@@ -43,19 +42,19 @@ class ResultFolder {
 
     const std::filesystem::path& path() const { return folder_; }
 
-    // Files by names relative to the folder, with sub-folders where they have some. write_file() of
-    // core/files/file.hpp, and a line of the list to be. Several threads may write, each its own files. Throws
-    // RunError, and FolderRemoved where the folder was removed since, or one in it.
+    // Writes a file as write_file() of core/files/file.hpp, and adds it to the list. Names are relative to the folder
+    // and may have sub-folders. Several threads may write different files. Throws RunError, and FolderRemoved if the
+    // folder, or one in it, was removed since.
     void write(const std::filesystem::path& name, std::string_view bytes);
-    // The same by write_file_in_parts().
+    // Writes a file like write(), by write_file_in_parts().
     void write_in_parts(const std::filesystem::path& name, const std::function<void(const AddBytes&)>& parts);
-    // A line of the list for a file that is known to be whole.
+    // Adds a file that is known to be complete to the list.
     void note(const std::filesystem::path& name, std::string_view bytes);
 
-    // Whether an earlier run wrote this file and it is still the same.
+    // True if an earlier run wrote this file and it has not changed.
     bool holds(const std::filesystem::path& name) const;
 
-    // While it lives, no other part of these results is in a turn; it waits until there is none.
+    // Excludes the turns of all other parts of these results during its life; the constructor waits for them to end.
     class Turn {
       public:
         explicit Turn(const ResultFolder& folder);
@@ -67,7 +66,7 @@ class ResultFolder {
         int lock_;
     };
 
-    // Last: the list of what was written and noted, and of what an earlier list has besides that is still there.
+    // Writes the list, as the last file: all files written and noted, and those of an earlier list that still exist.
     void write_checksums() const;
 
   private:
@@ -76,30 +75,30 @@ class ResultFolder {
     void require_folder_of(const std::filesystem::path& name);
 
     std::filesystem::path folder_;
-    int held_ = -1;                              // the folder, by whatever name; -1: it cannot be held
-    int lock_ = -1;                              // file descriptor
-    int part_lock_ = -1;                         // of the part; -1: alone
-    std::map<std::string, std::string> earlier_; // sums by name, of the list that was there
-    std::mutex mutex_;                           // of what follows
-    std::map<std::string, std::string> sums_;    // of this run
-    std::set<std::filesystem::path> made_;       // folders in this one
+    int held_ = -1;      // descriptor of the folder, which follows renames; -1: cannot be opened
+    int lock_ = -1;      // file descriptor
+    int part_lock_ = -1; // lock of the part; -1: no parts
+    std::map<std::string, std::string> earlier_; // checksums by name, from the earlier list
+    std::mutex mutex_;                           // guards the members below
+    std::map<std::string, std::string> sums_;    // checksums of this run
+    std::set<std::filesystem::path> made_;       // folders made within this one
 };
 
-// A file that is not the one that was written.
+// A file that differs from the one written.
 struct Damage {
-    std::filesystem::path file; // relative to the folder
+    std::filesystem::path file; // path relative to the folder
     std::string what;           // "is missing", "is not the file that was written"
 };
 
 struct Check {
-    std::vector<std::string> files; // that were looked at, by name
+    std::vector<std::string> files; // files checked, by name
     std::vector<Damage> damages;
 
-    // Of the same folder; a file that both found damaged counts once.
+    // Adds another check of the same folder; a file that both found damaged counts once.
     void add(const Check& other);
 };
 
-// Of the files that the folder's list names, and of the list.
+// Checks the files in the folder's list, and the list itself.
 Check check_by_checksums(const std::filesystem::path& folder);
 
 } // namespace vkfv

@@ -24,10 +24,11 @@ namespace {
 
 constexpr std::string_view file_mark = "vkfv cache 3\n";
 constexpr std::size_t checksum_digits = 64;
-// A file of many instruments' kernels is begun anew rather than read beyond this.
+// A larger file, with the kernels of many instruments, is not read but begun anew.
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-// A driver need not survive data that it did not write, and no reader data that the disk has changed.
+// The checksum protects drivers, which may crash on data that they did not write, and readers from data that the disk
+// has changed.
 std::string checksum(std::span<const std::byte> data) {
     return Digest().add(data).sha256();
 }
@@ -37,7 +38,7 @@ std::string checksum(std::span<const std::byte> data) {
 std::optional<std::filesystem::path> cache_folder() {
     const auto given = [](const char* variable) -> std::optional<std::filesystem::path> {
         const char* value = std::getenv(variable);
-        // The XDG base directory specification: relative paths are to be ignored.
+        // The XDG base directory specification requires that relative paths are ignored.
         if (value == nullptr || !std::filesystem::path(value).is_absolute()) {
             return std::nullopt;
         }
@@ -82,10 +83,10 @@ void write_cached(std::string_view name, std::span<const std::byte> data) {
     }
     std::string bytes = std::string(file_mark) + checksum(data);
     bytes.append(reinterpret_cast<const char*>(data.data()), data.size());
-    // Not synced: what a power cut leaves of it has another checksum.
+    // The file is not synced: one damaged by a power failure is recognized by its checksum.
     std::error_code failed;
     std::filesystem::create_directories(*folder, failed);
-    static std::atomic<unsigned> writes = 0; // two threads may write one file
+    static std::atomic<unsigned> writes = 0; // distinguishes threads that write the same file
     const auto aside = *folder / fmt::format("{}.part-{}-{}", name, ::getpid(), writes++);
     if (std::ofstream file(aside, std::ios::binary); !file.write(bytes.data(), std::ssize(bytes)) || !file.flush()) {
         std::filesystem::remove(aside, failed);
@@ -103,7 +104,7 @@ void thin_out_cached(std::string_view beginning, std::size_t most) {
     if (!folder) {
         return;
     }
-    std::error_code none; // another process may remove them at the same time
+    std::error_code none; // ignored: another process may remove files at the same time
     std::vector<std::pair<fs::file_time_type, fs::path>> files;
     for (fs::directory_iterator entry(*folder, none), end; entry != end; entry.increment(none)) {
         if (entry->path().filename().string().starts_with(beginning)) {

@@ -25,7 +25,7 @@ std::string Key::unit() const {
     if (type != Type::number && type != Type::numbers) {
         return {};
     }
-    // How a name ends, and what is said of it; the longer endings first.
+    // Endings of names and their units; an ending that contains another one comes first.
     constexpr std::array<std::pair<const char*, const char*>, 14> units = {{{"_um2_per_hz", "um2/Hz"},
                                                                             {"_e_per_s", "e-/s"},
                                                                             {"_um_per_s", "um/s"},

@@ -1,4 +1,4 @@
-// Keys of the configuration, each declared once: what a reader checks, and what is said of it in documents.
+// Keys of the configuration, each declared once: their checks for readers, and their descriptions for documents.
 #pragma once
 
 #include "core/toml/toml_reader.hpp"
@@ -11,14 +11,14 @@
 
 namespace vkfv {
 
-// Whether the bits of the images depend on a key.
+// States whether the bits of the images depend on a key.
 enum class Influence { images, nothing };
 
-// What a key without a value means.
+// The meaning of a key without a value.
 struct Default {
-    std::string toml;   // that value as TOML; empty: none that could be written
-    std::string text;   // in words, where it is no fixed value: "all of the file"
-    bool needed = true; // there is none: the key must be given
+    std::string toml;   // default as TOML; empty: none that could be written
+    std::string text;   // in words, if it is no fixed value: "all of the file"
+    bool needed = true; // true: no default, the key must be given
 
     static Default none() { return {}; }
     static Default of(double value);
@@ -28,44 +28,44 @@ struct Default {
     static Default in_words(std::string text) { return {.toml = {}, .text = std::move(text), .needed = false}; }
 };
 
-// In place of a default: the key must be given.
+// Marks a key without a default, which must be given.
 inline constexpr std::nullopt_t needed = std::nullopt;
 
-// Common to keys of all types. The name ends in the unit where there is one: "radius_mm".
+// The properties common to keys of all types. The name ends in the unit, if there is one: "radius_mm".
 class Key {
   public:
     enum class Type { number, integer, integer_pair, boolean, text, choice, file, numbers, booleans, texts };
     struct Choice {
         std::string name;
-        std::string meaning; // a sentence; empty: the name says it
+        std::string meaning; // a sentence; empty: the name is clear
     };
 
     std::string name;
     Type type;
     std::string meaning; // one sentence
     Default fallback;
-    NumberRange range{};              // of numbers and integers
-    std::vector<Choice> choices{};    // of a choice, or of each of several texts
-    std::string example{};            // TOML, for templates: of keys that must be given
-    std::vector<std::string> kinds{}; // of its table that have it, by the table's `kind` key; empty: all
+    NumberRange range{};              // for numbers and integers
+    std::vector<Choice> choices{};    // for a choice, or for each of several texts
+    std::string example{};            // TOML for templates, of keys that must be given
+    std::vector<std::string> kinds{}; // values of the table's `kind` key that have this key; empty: all
     Influence influence = Influence::images;
 
-    // "mm", "um", "deg", "W", "s"; empty: a number without a unit, or no number.
+    // The unit: "mm", "um", "deg", "W", "s"; empty for a number without a unit and for other types.
     std::string unit() const;
-    // "> 0", "1 to 64", "\"disc\" or \"ring\""; empty: every value of the type.
+    // The allowed values: "> 0", "1 to 64", "\"disc\" or \"ring\""; empty: every value of the type.
     std::string allowed() const;
     std::vector<std::string> choice_names() const;
-    // Of a text or a choice: the default without its quotes; empty: there is none.
+    // The default of a text or a choice without its quotes; empty if there is none.
     std::string fallback_text() const;
 };
 
-// A number; `fallback` empty: the key must be given.
+// A number. Without a `fallback` the key must be given.
 class NumberKey : public Key {
   public:
     NumberKey(std::string name, NumberRange range, std::optional<double> fallback, std::string meaning);
-    // Without a value where it is not given, which means what the words say.
+    // A number with a default that is only described in words; it has no value if it is not given.
     NumberKey(std::string name, NumberRange range, Default fallback, std::string meaning);
-    std::optional<double> value; // the default
+    std::optional<double> value; // default
 };
 
 class IntegerKey : public Key {
@@ -79,7 +79,7 @@ class IntegerKey : public Key {
 // Two integers in brackets, or one for both.
 class IntegerPairKey : public Key {
   public:
-    // Must be given.
+    // The constructor of a pair that must be given.
     IntegerPairKey(std::string name, std::int64_t minimum, std::int64_t maximum, std::string meaning);
     std::int64_t minimum, maximum;
 };
@@ -95,7 +95,7 @@ class TextKey : public Key {
     TextKey(std::string name, Default fallback, std::string meaning);
 };
 
-// A path, relative to where it was written.
+// A path, relative to the place where it is written.
 class FileKey : public Key {
   public:
     FileKey(std::string name, Default fallback, std::string meaning);
@@ -111,13 +111,13 @@ class BooleansKey : public Key {
     BooleansKey(std::string name, Default fallback, std::string meaning);
 };
 
-// Several texts, each one of the choices if there are any.
+// Several texts, each one of the choices, if there are any.
 class TextsKey : public Key {
   public:
     TextsKey(std::string name, std::vector<Choice> choices, Default fallback, std::string meaning);
 };
 
-// One of several words, which the compiler knows as values of Value.
+// One of several words, each of which stands for a value of the type Value.
 template <class Value>
 class ChoiceKey : public Key {
   public:
@@ -126,7 +126,7 @@ class ChoiceKey : public Key {
         std::string name;
         std::string meaning{};
     };
-    // Without a fallback the key must be given.
+    // A choice with its options. Without a fallback the key must be given.
     ChoiceKey(std::string key_name, std::vector<Option> options_, std::optional<Value> fallback_,
               std::string key_meaning)
         : Key{.name = std::move(key_name), .type = Type::choice, .meaning = std::move(key_meaning), .fallback = {}},
@@ -159,7 +159,7 @@ class ChoiceKey : public Key {
     std::optional<Value> value;
 };
 
-// A key with something more said of it, at its declaration.
+// The functions below add a property to a key at its declaration.
 template <class AnyKey>
 AnyKey of_kinds(std::vector<std::string> kinds, AnyKey key) {
     key.kinds = std::move(kinds);
@@ -184,16 +184,16 @@ AnyKey for_example(std::string toml, AnyKey key) {
 // A table of the configuration.
 struct KeyTable {
     enum class Presence { needed, optional, repeated }; // repeated: [[path]], any number of times
-    std::string path;                                   // dotted: "source.spectrum"; empty: the root
+    std::string path;                                   // dotted path: "source.spectrum"; empty: the root
     Presence presence = Presence::needed;
-    std::string meaning; // a sentence or two
-    std::string subject; // in messages, with `kind`: "a source"; empty: the key is named instead
-    std::string kind;    // name of the key that decides what other keys there are; empty: none does
+    std::string meaning; // one or two sentences
+    std::string subject; // subject of messages with `kind`: "a source"; empty: the key is named
+    std::string kind;    // key that decides which other keys exist; empty: none
     std::vector<const Key*> keys;
-    bool shown = false;   // in a template, although it may be absent
-    bool several = false; // instead of one [path] there may be several [[path]]
+    bool shown = false;   // true: shown in a template although optional
+    bool several = false; // true: either one [path] or several [[path]]
 
-    // The kinds in the order of their key's choices.
+    // The values of the key `kind`, in the order of its choices.
     std::vector<std::string> kinds() const;
 };
 

@@ -9,8 +9,8 @@ namespace vkfv {
 
 namespace {
 
-// The value, or one that does no harm where it is a length that nothing has, which is noted then. Files that other
-// programs made, such as lens designs with their roundings of 0, are not read by keys and keep their numbers.
+// The value, or a harmless one in place of a length outside the physical range, which is noted. Files of other
+// programs, such as lens designs with roundings of 0, are not read by keys and keep their numbers.
 double with_physical_length(const TomlTable& table, const Key& key, double value) {
     const auto expected = expected_length(key.name, value);
     if (!expected) {
@@ -26,7 +26,7 @@ double with_physical_length(const TomlTable& table, const Key& key, double value
 Section::Section(const TomlTable& table, const KeyTable& keys, ReadKeys& read)
     : table_(table), keys_(&keys), read_(&read) {
     const auto& path = table.path();
-    // "a[1].b[2]" is a table of the array a.b in the last table of the array a.
+    // The path "a[1].b[2]" is a table of the array a.b in the last table of the array a.
     std::string header = "\n[";
     bool in_index = false;
     for (const char character : path) {
@@ -163,7 +163,8 @@ void Section::record_reference(const Key& key, const std::string& value, const s
 }
 
 void Section::reject_keys_of_other_kinds(const std::string& kind) const {
-    std::map<std::string, std::vector<std::string>> kinds_with; // in the order of the alphabet, as problems are told
+    // The kinds of each key, sorted by its name, the order in which problems are reported.
+    std::map<std::string, std::vector<std::string>> kinds_with;
     for (const Key* key : keys_->keys) {
         if (!key->kinds.empty()) {
             auto& kinds = kinds_with[key->name];

@@ -1,5 +1,4 @@
-// A table of the configuration as it is read by its keys: what each means also enters the canonical text and the
-// identity.
+// A table of the configuration read by its keys; each value read also enters the canonical text and the identity.
 #pragma once
 
 #include "core/keys/key.hpp"
@@ -14,32 +13,32 @@
 
 namespace vkfv {
 
-// What has been read.
+// The configuration as far as it has been read.
 struct ReadKeys {
-    // Where each key and table stands that was read, by dotted key; defaults have the place of their table.
+    // The place of each key and table that was read, by dotted key; a default has the place of its table.
     std::map<std::string, SourceLocation> places;
 
-    // Every key with its value, defaults included, in a fixed order and in the file's own units, so that it reads back
-    // to the same bits: TOML. Paths are absolute.
+    // The canonical text: all keys with their values, defaults included, in a fixed order and in the file's own units,
+    // as TOML that reads back to the same bits. Paths are absolute.
     std::string canonical;
 
-    // The same without what no image depends on (Influence), and with digests of what a path or a name stands for in
-    // its place.
+    // The identity: the canonical text without keys that affect no image (Influence), and with digests of files and
+    // assets instead of their paths and names.
     std::string identity;
 };
 
-// A key that is read is written down with its value, or its default. Keys that are not given and have no default are
-// not. The caller sees to it that keys are those of the table.
+// A table of the configuration with its keys. Each key read is recorded with its value or default; keys that are not
+// given and have no default are not. The caller must use only keys of this table.
 class Section {
   public:
-    // A key of `keys` that the table's kind has not is refused when the kind is read.
+    // Starts to read a table. A key of `keys` that the table's kind lacks is refused when the kind is read.
     Section(const TomlTable& table, const KeyTable& keys, ReadKeys& read);
 
     const TomlTable& table() const { return table_; }
     bool has(const Key& key) const { return table_.has(key.name); }
 
     double number(const NumberKey& key) const;
-    // The default, or the range, where they follow from other keys.
+    // For defaults, or ranges, that follow from other keys.
     double number(const NumberKey& key, double fallback) const;
     double number_in(const NumberKey& key, const NumberRange& range) const;
     std::optional<double> number_if_given(const NumberKey& key) const;
@@ -51,14 +50,14 @@ class Section {
     std::vector<bool> booleans(const BooleansKey& key, const std::vector<bool>& fallback) const;
     std::string text(const TextKey& key) const;
     std::optional<std::string> text_if_given(const TextKey& key) const;
-    // A file that the key names, as it is looked for; its canonical text is the absolute path.
+    // The path of a file that the key names, as looked_for(); the canonical text has the absolute path.
     std::filesystem::path file(const FileKey& key) const;
     std::optional<std::filesystem::path> file_if_given(const FileKey& key) const;
     template <class Value>
     Value choice(const ChoiceKey<Value>& key) const {
         return key.value_of(choice_name(key, key.value.has_value()));
     }
-    // A choice that decides what other keys there are: a wrong one ends the reading of this table, and keys of other
+    // A choice that decides which other keys exist: an invalid one ends the reading of this table, and keys of other
     // kinds are refused.
     template <class Value>
     Value kind(const ChoiceKey<Value>& key) const {
@@ -66,12 +65,12 @@ class Section {
     }
     std::string kind_name(const Key& key, bool has_default) const;
 
-    // A value, as TOML, that was read by other means.
+    // Records a value, as TOML, that was read by other means.
     void record(const Key& key, const std::string& value) const;
-    // A path or a name in the canonical text; in the identity nothing, or a digest of what it stands for.
+    // Records a path or a name in the canonical text; the identity gets a digest of the content, or nothing.
     void record_reference(const Key& key, const std::string& value, const std::string& digest = "") const;
 
-    // Throws InputError for this key's value as found; for what several values are needed to tell.
+    // Throws InputError for this key's value, for conditions that involve several values.
     [[noreturn]] void fail(const Key& key, std::string expected, std::string remedy) const {
         table_.fail(key.name, std::move(expected), std::move(remedy));
     }
@@ -91,15 +90,16 @@ class Section {
 
 std::filesystem::path absolute_path(const std::filesystem::path& path);
 
-// The path; of a file that does not exist the absolute one, so that messages tell where it was looked for.
+// The path, made absolute if the file does not exist, so that messages name the place searched.
 std::filesystem::path looked_for(const std::filesystem::path& path);
 
-// Runs `work`, which reads a file that the key names, and says where that was named if there is no such file.
+// Runs `work`, which reads a file that the key names; if the file does not exist, the error also states where it is
+// named.
 void as_named(const TomlTable& table, const std::string& key, const std::filesystem::path& file,
               const std::function<void()>& work);
 
-// Runs `work`, and gives each problem of its InputError the place of the problem's key; without one, if it has none,
-// that of the key's table, else `otherwise`.
+// Runs `work`, and places each problem of its InputError at the problem's key. A problem whose key has no place, and
+// without a file, gets the place of the key's table, else `otherwise`.
 void at_its_place(const ReadKeys& read, const SourceLocation& otherwise, const std::function<void()>& work);
 
 } // namespace vkfv

@@ -1,4 +1,4 @@
-// Which of many boxes a ray meets, on the host and in double.
+// A tree of boxes that finds those that a ray meets, on the host and in double.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,7 +13,7 @@
 
 namespace vkfv {
 
-// Halved by number along the longest axis, down to a few boxes.
+// A binary tree over boxes, halved by number along the longest axis down to a few boxes.
 class BoxTree {
   public:
     struct Box {
@@ -23,11 +23,11 @@ class BoxTree {
     BoxTree() = default;
     explicit BoxTree(std::span<const Box> boxes);
 
-    // Calls nearer(k, farthest) for every box k that the ray may meet at a distance from 0 to `farthest`; it
-    // gives the new `farthest`. Boxes are a little wider than they are, by what a few operations round.
+    // Calls nearer(k, farthest) for every box k that the ray may meet at a distance from 0 to `farthest`; it returns
+    // the new `farthest`. Boxes are enlarged a little, to allow for the rounding of a few operations.
     template <class Nearer>
     void walk(const glm::dvec3& origin, const glm::dvec3& direction, double farthest, Nearer nearer) const {
-        std::array<std::size_t, 64> stack; // 2^32 boxes are 32 deep
+        std::array<std::size_t, 64> stack; // 2^32 boxes have a depth of 32
         std::size_t depth = 0;
         if (!nodes_.empty()) {
             stack[depth++] = 0;
@@ -51,14 +51,14 @@ class BoxTree {
   private:
     struct Node {
         Box box;
-        std::size_t first = 0;  // child, or place in the order of a leaf
-        std::size_t second = 0; // child
-        std::size_t count = 0;  // boxes of a leaf; 0: an inner node
+        std::size_t first = 0;  // first child; of a leaf: index into order_
+        std::size_t second = 0; // second child
+        std::size_t count = 0;  // number of boxes of a leaf; 0: an inner node
     };
 
     static bool meets(const Box& box, const glm::dvec3& origin, const glm::dvec3& direction, double stop) {
         double start = 0;
-        constexpr double margin = 1e-12; // of the coordinates
+        constexpr double margin = 1e-12; // relative to the coordinates
         for (int axis = 0; axis < 3; ++axis) {
             const double wider =
                 margin * (std::abs(origin[axis]) + std::abs(box.lower[axis]) + std::abs(box.upper[axis]));
@@ -75,7 +75,7 @@ class BoxTree {
     }
     std::size_t build(std::span<const Box> boxes, std::size_t begin, std::size_t end);
 
-    std::vector<Node> nodes_; // the root first
+    std::vector<Node> nodes_; // node 0 is the root
     std::vector<std::uint32_t> order_;
 };
 

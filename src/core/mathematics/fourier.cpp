@@ -13,7 +13,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Shares `count` lines among threads: task(first, end, fft), where fft holds the twiddle factors of its thread.
+// Distributes `count` lines among threads: task(first, end, fft), where fft holds the twiddle factors of its thread.
 template <class Task>
 void share_lines(int count, std::size_t values, const Task& task) {
     // Starting a thread takes tens of microseconds, as does transforming this many values.
@@ -25,11 +25,11 @@ void share_lines(int count, std::size_t values, const Task& task) {
     });
 }
 
-// Lines that are copied at once: neighbouring columns share what memory gives at a time.
+// The number of lines copied together, as neighbouring columns share cache lines.
 constexpr int lines_at_once = 8;
 
-// task(line, fft) on copies of `count` lines of `length` values, in buffers of `padded` with zeros behind them, whose
-// first `length` values are put back; value k of line n is at values[n * line_step + k * value_step].
+// Calls task(line, fft) on copies of `count` lines of `length` values, in buffers of `padded` values with zeros behind
+// them, and copies the first `length` values back. Value k of line n is at values[n * line_step + k * value_step].
 template <class Task>
 void over_lines(std::vector<Complex>& values, int count, std::size_t line_step, int length, std::size_t value_step,
                 int padded, const Task& task) {
@@ -53,11 +53,11 @@ void over_lines(std::vector<Complex>& values, int count, std::size_t line_step, 
     });
 }
 
-// Transforms lines as over_lines() has them.
+// Transforms lines; the arguments are those of over_lines().
 void transform_lines(std::vector<Complex>& values, int count, std::size_t line_step, int length, std::size_t value_step,
                      bool inverse) {
     if (length == 1)
-        return; // is its own transform; LineTransform takes none so short
+        return; // a single value is its own transform; LineTransform needs two or more
     over_lines(values, count, line_step, length, value_step, length, [&](Complex* line, LineTransform& fft) {
         thread_local std::vector<Complex> transformed;
         transformed.resize(static_cast<std::size_t>(length));
@@ -69,11 +69,11 @@ void transform_lines(std::vector<Complex>& values, int count, std::size_t line_s
     });
 }
 
-// Convolves lines as over_lines() has them with symmetric weights.
+// Convolves lines with symmetric weights; the arguments are those of over_lines().
 void convolve_lines(std::vector<Complex>& values, int count, std::size_t line_step, int length, std::size_t value_step,
                     const std::vector<double>& weights) {
     const int reach = static_cast<int>(weights.size()) - 1;
-    const int padded = std::max(2, convenient_length(length + reach)); // what leaves one end does not come back
+    const int padded = std::max(2, convenient_length(length + reach)); // prevents wrapping
     const auto size = static_cast<std::size_t>(padded);
     std::vector<Complex> kernel(size), spectrum(size);
     for (std::size_t k = 0; k < weights.size(); ++k)
@@ -99,7 +99,7 @@ void transform_grid(Grid<Complex>& grid, bool inverse) {
     transform_lines(grid.values, grid.columns, 1, grid.rows, columns, inverse);
 }
 
-// As transform_lines(), the cosine transform. Two real lines are one complex one.
+// The cosine transform of lines; the arguments are those of transform_lines(). Two real lines form one complex one.
 void cosine_lines(std::vector<double>& values, int count, std::size_t line_step, int length, std::size_t value_step,
                   bool inverse) {
     if (length == 1)
@@ -108,7 +108,7 @@ void cosine_lines(std::vector<double>& values, int count, std::size_t line_step,
     std::vector<Complex> turns(n); // exp(-i pi k / (2 n))
     for (std::size_t k = 0; k < n; ++k)
         turns[k] = std::polar(1.0, -std::numbers::pi * static_cast<double>(k) / (2.0 * length));
-    // Even places ascend, odd ones descend behind them.
+    // Values of even index come first in ascending order, those of odd index follow in descending order.
     const auto place = [n](std::size_t k) { return k % 2 == 0 ? k / 2 : n - 1 - k / 2; };
     share_lines((count + 1) / 2, values.size(), [&](int first, int end, LineTransform& fft) {
         std::vector<Complex> line(n), transformed(n);
@@ -126,7 +126,8 @@ void cosine_lines(std::vector<double>& values, int count, std::size_t line_step,
                         b[k * value_step] = (turns[k] * (at - mirrored)).imag() / 2;
                 }
             } else {
-                // V[k] = exp(i pi k / 2n) (X[k] - i X[n - k]), X[n] = 0, of a and i times that of b.
+                // V[k] = exp(i pi k / 2n) (X[k] - i X[n - k]), with X[n] = 0; the line is V of `a` plus i times V of
+                // `b`.
                 for (std::size_t k = 0; k < n; ++k) {
                     const auto value = [&](const double* x) {
                         return std::conj(turns[k]) * Complex(x[k * value_step], k == 0 ? 0 : -x[(n - k) * value_step]);

@@ -8,31 +8,31 @@
 
 namespace vkfv {
 
-// In place: F[l, m] = sum over i, k of f[i, k] exp(-2 pi i (i l / columns + k m / rows)), without a factor.
-// Frequencies above half the size are the negative ones. Any size; quick for those of convenient_length().
+// Transforms in place: F[l, m] = sum over i, k of f[i, k] exp(-2 pi i (i l / columns + k m / rows)), without a factor.
+// Indices above half the size are negative frequencies. Any size is allowed; convenient_length() is fast.
 void fourier_transform(Grid<std::complex<double>>& grid);
 
-// Its inverse: the factor 1 / (columns rows) is here.
+// The inverse of fourier_transform(), with the factor 1 / (columns rows).
 void inverse_fourier_transform(Grid<std::complex<double>>& grid);
 
-// The type II cosine transform, the Fourier transform of the grid continued by mirroring it about its edges: in place,
-// C[l, m] = sum over i, k of f[i, k] cos(pi l (2 i + 1) / (2 columns)) cos(pi m (2 k + 1) / (2 rows)); value l belongs
-// to l / (2 columns) cycles per point. By one Fourier transform of the same length (J. Makhoul, "A fast cosine
-// transform in one and two dimensions", 1980).
+// The type II cosine transform in place, which is the Fourier transform of the grid continued by reflection at its
+// edges: C[l, m] = sum over i, k of f[i, k] cos(pi l (2 i + 1) / (2 columns)) cos(pi m (2 k + 1) / (2 rows)); value l
+// belongs to l / (2 columns) cycles per point. It uses one Fourier transform of the same length (J. Makhoul, "A fast
+// cosine transform in one and two dimensions", 1980).
 void cosine_transform(Grid<double>& grid);
 
-// Its inverse.
+// The inverse of cosine_transform().
 void inverse_cosine_transform(Grid<double>& grid);
 
-// In place: the sum over i, k of f[x - i, y - k] along_x[|i|] along_y[|k|], f zero beyond its borders: what a separable
-// symmetric weighting gives, of weights from the middle outwards, none further out than the grid is long. By transforms
-// of padded lines, in time that hardly depends on how many weights there are.
+// Convolves in place with a separable symmetric weighting: the sum over i, k of f[x - i, y - k] along_x[|i|]
+// along_y[|k|], with f zero beyond its borders. The weights go from the middle outwards, at most as far as the grid is
+// long. It uses transforms of padded lines, whose time hardly depends on the number of weights.
 void convolve(Grid<std::complex<double>>& grid, const std::vector<double>& along_x, const std::vector<double>& along_y);
 
-// The smallest number from `least` on with no prime factor above 5.
+// The smallest number >= `least` with no prime factor above 5.
 int convenient_length(int least);
 
-// Of index k in a transform of n values, in cycles per value: k / n, less 1 from n / 2 on.
+// The frequency of index k in a transform of n values, in cycles per value: k / n, minus 1 from n / 2 on.
 inline double fourier_frequency(int k, int n) {
     return static_cast<double>(2 * k < n ? k : k - n) / n;
 }

@@ -6,8 +6,8 @@
 
 namespace vkfv {
 
-// values[row * columns + column]; column ascends with x and row with y of the specimen (row 0 is the lowest y).
-// Files that are looked at from the top flip the rows: each writer says so.
+// A two-dimensional array values[row * columns + column]; column ascends with x and row with y of the specimen (row 0
+// is the lowest y). Files that are viewed from the top reverse the rows; each writer states it.
 template <class Value>
 struct Grid {
     int columns = 0;

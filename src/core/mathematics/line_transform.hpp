@@ -6,7 +6,8 @@
 
 namespace vkfv {
 
-// It keeps the twiddle factors of the lengths that it has met: one for each thread.
+// Transforms of lines. The object keeps the twiddle factors of all lengths used so far and is not thread-safe: each
+// thread needs its own.
 class LineTransform {
   public:
     LineTransform();
@@ -14,8 +15,8 @@ class LineTransform {
     LineTransform(const LineTransform&) = delete;
     LineTransform& operator=(const LineTransform&) = delete;
 
-    // Sums of values times exp(-2 pi i k n / length), and with +2 pi i for the inverse; neither is scaled. `length` is
-    // 2 or more, and `to` no part of `from`.
+    // The sums of values times exp(-2 pi i k n / length), or with +2 pi i for the inverse; neither is scaled. `length`
+    // >= 2; `to` and `from` do not overlap.
     void forward(std::complex<double>* to, const std::complex<double>* from, int length);
     void inverse(std::complex<double>* to, const std::complex<double>* from, int length);
 

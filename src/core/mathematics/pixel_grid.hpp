@@ -1,11 +1,11 @@
-// Points at regular distances, as pixels and heights stand.
+// Regular grids of points, for pixels and heights.
 #pragma once
 
 #include <cstddef>
 
 namespace vkfv {
 
-// How many pixels an image has.
+// The size of an image in pixels.
 struct ImageSize {
     int columns = 0;
     int rows = 0;
@@ -15,7 +15,7 @@ struct ImageSize {
     constexpr bool operator==(const ImageSize&) const = default;
 };
 
-// Column i and row j stand at (x0 + i * pitch_x, y0 + j * pitch_y), in mm.
+// A regular grid: column i and row j are at (x0 + i * pitch_x, y0 + j * pitch_y), in mm.
 struct PixelGrid {
     int columns = 0;
     int rows = 0;
@@ -24,7 +24,7 @@ struct PixelGrid {
     double pitch_x = 0;
     double pitch_y = 0;
 
-    // With its middle at the origin, as the optical axis meets the detector.
+    // A grid whose middle is the origin, where the optical axis meets the detector.
     static PixelGrid centred(int columns, int rows, double pitch_x, double pitch_y) {
         return {.columns = columns,
                 .rows = rows,

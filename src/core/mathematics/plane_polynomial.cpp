@@ -60,7 +60,7 @@ bool has(Parity parity, int power_of_y) {
     return power_of_y == 0;
 }
 
-// Their places among all coefficients.
+// The indices of a parity's terms among all coefficients.
 std::vector<std::size_t> terms_of(int degree, Parity parity) {
     std::vector<std::size_t> terms;
     std::size_t place = 0;
@@ -74,8 +74,8 @@ std::vector<std::size_t> terms_of(int degree, Parity parity) {
     return terms;
 }
 
-// Monomials at the points, and the values, side by side: reflections of all columns then go along rows, where they are
-// vectors. Each column's sums have the order of its points.
+// The matrix of monomials at the points, with the values as further columns, stored by rows: a reflection of all
+// columns then runs along rows, which vectorizes. Each column's sums keep the order of its points.
 class Columns {
   public:
     Columns(int degree, Parity parity, const std::vector<glm::dvec2>& points,
@@ -105,7 +105,7 @@ class Columns {
 
     double* row(std::size_t k) { return &numbers_[k * count_]; }
 
-    // Makes zeros of a column's numbers below its diagonal. Returns what stands on the diagonal.
+    // Reflects a column so that its numbers below the diagonal become zero. Returns the diagonal element.
     double reflect(std::size_t column) {
         std::vector<double> mirror;
         double square = 0;

@@ -17,7 +17,7 @@ class PlanePolynomial {
     static std::size_t terms(int degree) { return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2); }
 
     int degree() const { return degree_; }
-    std::span<double> coefficients() { return coefficients_; } // by j, then by i
+    std::span<double> coefficients() { return coefficients_; } // ordered by j, then by i
     std::span<const double> along_x() const {
         return std::span(coefficients_).first(static_cast<std::size_t>(degree_ + 1));
     }
@@ -29,13 +29,13 @@ class PlanePolynomial {
     std::vector<double> coefficients_;
 };
 
-// Which powers of y a polynomial has: of a function that is its own mirror image about the x axis, or that changes its
-// sign there; none: of x alone.
+// The powers of y in a polynomial: even for a function symmetric about the x axis, odd for an antisymmetric one; none
+// for a function of x alone.
 enum class Parity { any, even, odd, none };
 
-// The polynomial for each column of `values` whose squared deviations at the points have the least sum, by
-// Householder's reflections (Golub and Van Loan, "Matrix Computations", section 5.3). Points within the unit disc, more
-// of them than terms: std::invalid_argument. weights: of the squares; none: all alike.
+// Fits, for each column of `values`, the polynomial with the least sum of squared deviations at the points, by
+// Householder reflections (Golub and Van Loan, "Matrix Computations", section 5.3). The points lie within the unit disc
+// and are at least as many as the terms, else std::invalid_argument. weights: of the squares; empty: all equal.
 std::vector<PlanePolynomial> fit_polynomials(int degree, const std::vector<glm::dvec2>& points,
                                              const std::vector<std::vector<double>>& values,
                                              Parity parity = Parity::any, const std::vector<double>& weights = {});

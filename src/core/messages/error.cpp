@@ -22,7 +22,7 @@ std::string SourceLocation::to_string() const {
 
 namespace {
 
-constexpr std::size_t most_told = 10; // problems; more than a screen are not read
+constexpr std::size_t most_told = 10; // problems in a message, about a screen
 
 std::string describe(const InputProblem& problem) {
     std::string text = problem.where.to_string();

@@ -1,4 +1,4 @@
-// Typed errors of set-up. Physics never throws (it returns a status); main() catches these once.
+// Typed errors of set-up. Physics never throws (it returns a status); main() catches these errors.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,7 @@
 
 namespace vkfv {
 
-// Where in the input something stands. Lines and columns count from 1; 0 means "not known".
-// Binary files give a byte offset instead.
+// A place in the input. Lines and columns count from 1; 0 means "not known". Binary files have a byte offset instead.
 struct SourceLocation {
     std::filesystem::path file;
     int line = 0;
@@ -21,30 +20,30 @@ struct SourceLocation {
 
     bool operator==(const SourceLocation&) const = default;
 
-    // "file:line:column" or "file@offset", as far as known.
+    // The place as "file:line:column" or "file@offset", as far as known.
     std::string to_string() const;
 };
 
-// What is wrong with an input: every message names the place, the key or item, what was found,
-// what was expected, and the remedy.
+// An error in an input: every message names the place, the key or item, the value found, the value expected, and the
+// remedy.
 struct InputProblem {
     SourceLocation where;
     std::string key;      // "specimen.material.g", "triangle 17", "--rays"; may be empty
-    std::string found;    // the offending value as read
+    std::string found;    // offending value as read
     std::string expected; // "a number in [-1, 1]"
     std::string remedy;   // one imperative sentence
 };
 
-// Exit code 2: the user's input is wrong. The message has a line for each of the first ten problems, and tells how many
-// more there are.
+// The user's input is wrong; exit code 2. The message has a line for each of the first ten problems, and the number of
+// further ones.
 class InputError : public std::runtime_error {
   public:
     explicit InputError(InputProblem problem);
-    explicit InputError(std::vector<InputProblem> problems); // at least one, in the order in which they are told
+    explicit InputError(std::vector<InputProblem> problems); // at least one, in the order of the message
     const InputProblem& problem() const { return problems_.front(); }
     const std::vector<InputProblem>& problems() const { return problems_; }
 
-    // The same error with every problem changed by `change(InputProblem&)`: for whoever knows more of them.
+    // The error with every problem changed by `change(InputProblem&)`, for callers that know more about the problems.
     template <class Change>
     InputError with_each(Change change) const {
         auto problems = problems_;
@@ -58,17 +57,17 @@ class InputError : public std::runtime_error {
     std::vector<InputProblem> problems_;
 };
 
-// Throws InputError: what stands in a file, or the file itself, is not what was expected. `key` may be empty.
+// Throws InputError for a file whose content, or which itself, is not as expected. `key` may be empty.
 [[noreturn]] void refuse_file(const std::filesystem::path& file, std::string key, std::string found,
                               std::string expected, std::string remedy);
 
-// Exit code 3: no usable device. The message names what is missing and the remedy.
+// No usable device; exit code 3. The message names the missing part and the remedy.
 class DeviceError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-// Exit code 4: the run failed and can be resumed.
+// The run failed and can be resumed; exit code 4.
 class RunError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;

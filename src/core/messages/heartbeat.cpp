@@ -17,13 +17,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double long_wait = 3600; // s; nobody stays in front of it
+constexpr double long_wait = 3600; // s; a wait that deserves a warning
 
 std::atomic<Clock::rep> last_said{0};
 std::atomic<double> work_done{0};
 std::atomic<double> share_of_parts{1};
 
-// The counted work that is under way, if one is.
+// The state of counted work in progress, if there is any.
 struct Work {
     std::mutex mutex;
     bool under_way = false;
@@ -169,7 +169,7 @@ void Heartbeat::listen(std::chrono::milliseconds interval) {
             continue;
         }
         const HeartbeatState state = state_now();
-        note_that_something_was_said(); // whoever tells may be told to be quiet
+        note_that_something_was_said(); // a quiet teller would not postpone the next one
         tell(state);
         warn_of_hours(state);
     }

@@ -1,4 +1,4 @@
-// A word at least every ten seconds from a program that is at work, with a forecast where its work is counted.
+// Heartbeats: a message at least every ten seconds while the program works, with a forecast if the work is counted.
 #pragma once
 
 #include <chrono>
@@ -10,11 +10,11 @@
 
 namespace vkfv {
 
-// Work that is counted while it is done, from construction to destruction. One at a time: while one is under way,
-// others count nothing.
+// Work whose progress is counted, from construction to destruction. Only one counts at a time: others meanwhile have no
+// effect.
 class CountedWork {
   public:
-    // total: what advance_work() will have counted at the end; images, and parts of an image.
+    // total: the sum that advance_work() will reach at the end; it includes images and parts of an image.
     explicit CountedWork(double total);
     ~CountedWork();
     CountedWork(const CountedWork&) = delete;
@@ -24,11 +24,11 @@ class CountedWork {
     bool counts_;
 };
 
-// So much of the work under way is done, in any thread.
+// Adds to the progress of the counted work, from any thread.
 void advance_work(double done);
 
-// While it lives, advance_work() counts only this share of what it is told: for a loop over equal parts of something
-// that is counted as one.
+// Scales the progress counted by advance_work() by this share during its life, for a loop over equal parts of a unit of
+// counted work.
 class PartOfWork {
   public:
     explicit PartOfWork(double share);
@@ -40,26 +40,26 @@ class PartOfWork {
     double before_;
 };
 
-// A heartbeat tells the stage of the main thread (core/messages/stages.hpp), how long it has lasted, and how much of
-// the counted work is done.
+// The content of a heartbeat: the stage of the main thread (core/messages/stages.hpp), its duration so far, and the
+// progress of the counted work.
 struct HeartbeatState {
     std::string stage;
     double seconds = 0;      // in the stage, or since the counted work began
-    double share = 0;        // of the counted work that is done; 0: not known
-    double seconds_left = 0; // at the speed so far; where the share is known
+    double share = 0;        // done share of the counted work; 0: not known
+    double seconds_left = 0; // at the average speed so far; valid if the share is known
 
-    // "images: 12 % done in 0:20, about 2:27 left", or "specimen: at work for 0:20".
+    // The text, such as "images: 12 % done in 0:20, about 2:27 left", or "specimen: at work for 0:20".
     std::string text() const;
 };
 
-// Something was said on standard error: the next heartbeat is a whole interval later.
+// Postpones the next heartbeat by a whole interval, after output on standard error.
 void note_that_something_was_said();
 
-// Who tells the heartbeats, in the heartbeat's own thread; empty: the log, which also does at first. When this returns,
-// the one before tells no more.
+// Sets the function that outputs heartbeats, called in the heartbeat's own thread; empty: the log, which is the
+// default. After the return the previous function is no longer called.
 void tell_heartbeats_by(std::function<void(const HeartbeatState&)> teller);
 
-// The thread that listens. Where hours lie ahead of counted work it warns, once.
+// The thread of the heartbeat. It warns once if counted work will take hours.
 class Heartbeat {
   public:
     explicit Heartbeat(std::chrono::milliseconds interval = std::chrono::seconds(10));

@@ -19,18 +19,18 @@ namespace {
 constexpr std::size_t most_bytes = 500;
 
 struct Sentence {
-    std::array<char, 6 * most_bytes + 2> text; // in JSON a byte may take six
+    std::array<char, 6 * most_bytes + 2> text; // a byte takes up to six in JSON
     std::size_t bytes;
 };
 
-// A handler may read one while the other is written; a third change during its few microseconds would only garble the
-// text.
+// Two buffers: a handler may read one while the other is written. A third change during its few microseconds would only
+// garble the text.
 std::array<Sentence, 2> sentences{};
 std::atomic<std::size_t> at_hand{0};
 std::atomic<bool> as_json{false};
 static_assert(std::atomic<std::size_t>::is_always_lock_free, "a signal handler may not wait");
 
-// Calls nothing but what POSIX allows in a handler.
+// Writes to standard error with functions that POSIX allows in a signal handler.
 void say(std::string_view text) {
     while (!text.empty()) {
         const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
@@ -43,7 +43,7 @@ void say(std::string_view text) {
 
 constexpr std::string_view first_sentence = "Give the same command again.";
 
-// Those that a user, a scheduler or a limit sends to end a program.
+// A signal by which a user, a scheduler or a limit ends a program.
 struct Signal {
     int number;
     std::string_view name;
@@ -61,14 +61,15 @@ extern "C" void on_interruption(int signal) {
     say(as_json ? "\",\"text\":" : ". ");
     say({sentence.text.data(), sentence.bytes});
     say(as_json ? "}\n" : "\n");
-    ::raise(signal); // its handler is the default again
+    ::raise(signal); // the handler has been reset to the default
 }
 
 } // namespace
 
 void explain_interruptions() {
     say_when_interrupted(first_sentence);
-    // A write beyond a limit of files' sizes fails then like any other, by EFBIG, and says so where the file is needed.
+    // With SIGXFSZ ignored, a write beyond a file size limit fails with EFBIG, and is reported as other failed writes
+    // are.
     std::signal(SIGXFSZ, SIG_IGN);
     for (const auto& [signal, name] : signals) {
         struct sigaction before {};

@@ -1,20 +1,20 @@
-// What a program says when it is told to end: what is kept, and what to type.
+// The last words of a program that a signal ends: the results that are kept, and the command to continue.
 #pragma once
 
 #include <string_view>
 
 namespace vkfv {
 
-// SIGINT, SIGTERM, SIGHUP and other signals that a user, a scheduler or a limit sends print the sentence at hand on
-// standard error and then end the program as if nobody had caught them, so that a shell sees the signal (130, 143,
-// 129). One that was ignored at the start stays ignored (nohup). SIGXFSZ is ignored.
+// Installs handlers for SIGINT, SIGTERM, SIGHUP and other signals by which a user, a scheduler or a limit ends a
+// program. They print the current sentence on standard error and then end the program by the same signal, so that a
+// shell sees it (130, 143, 129). A signal that was ignored at the start stays ignored (nohup). SIGXFSZ is ignored.
 void explain_interruptions();
 
-// The sentence from now on; at most 500 bytes of it are said.
+// Sets the sentence; at most 500 bytes of it are printed.
 void say_when_interrupted(std::string_view sentence);
 
-// From now on as a line of JSON: {"level":"error","signal":"SIGTERM","text":"..."}. Threads that say sentences start
-// later.
+// Prints the sentence as a line of JSON from now on: {"level":"error","signal":"SIGTERM","text":"..."}. It must be
+// called before threads that set sentences start.
 void interruptions_as_json();
 
 } // namespace vkfv

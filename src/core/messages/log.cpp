@@ -32,7 +32,7 @@ std::string now_text() {
     return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now)), milliseconds);
 }
 
-// A message may repeat a file's name in whatever encoding that is.
+// JSON text of a line; invalid UTF-8, as in a file's name, is replaced.
 std::string dumped(const Json& line) {
     return line.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -49,8 +49,8 @@ class JsonFormatter final : public spdlog::formatter {
     std::unique_ptr<formatter> clone() const override { return std::make_unique<JsonFormatter>(); }
 };
 
-// The text of a message as a terminal may have it. A file or its name may have put control characters there, which a
-// terminal would obey: all but tabs and ends of lines become "\xNN".
+// The text of a message made safe for a terminal. Control characters in a file or its name, which a terminal would
+// obey, become "\xNN", except tabs and ends of lines.
 std::string for_terminal(std::string_view text) {
     std::string result;
     for (const char character : text) {
@@ -64,8 +64,8 @@ std::string for_terminal(std::string_view text) {
     return result;
 }
 
-// A flag of spdlog's pattern for the message made safe. The colours around it, which are control characters too, are
-// the sink's own and stay.
+// A flag of spdlog's pattern for the message made safe. The colours around it, which are control characters too, come
+// from the sink and are not affected.
 class SafeMessage final : public spdlog::custom_flag_formatter {
   public:
     void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& line) override {
@@ -75,7 +75,7 @@ class SafeMessage final : public spdlog::custom_flag_formatter {
     std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<SafeMessage>(); }
 };
 
-// A message in the log is a word too, so that the next heartbeat waits a whole interval again.
+// A sink that postpones the next heartbeat by a whole interval after each message of the log.
 class HeartbeatDelay final : public spdlog::sinks::base_sink<std::mutex> {
     void sink_it_(const spdlog::details::log_msg&) override { note_that_something_was_said(); }
     void flush_() override {}

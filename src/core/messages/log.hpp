@@ -1,4 +1,4 @@
-// What a program says on standard error: lines for people, or a JSON object a line for programs that watch it.
+// The program's output on standard error: lines for people, or one JSON object a line for programs.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,23 @@
 
 namespace vkfv {
 
-// Opens the program's log, for people at first.
+// Opens the program's log, as lines for people.
 void open_log();
 
-// From now on each line is an object with "time" (ISO 8601, UTC) and "level" or "event": messages of the log with
-// "text", and what core/messages/progress.hpp tells. Interruptions too, without a time, which a signal handler cannot
-// tell.
+// Switches to JSON: each line is an object with "time" (ISO 8601, UTC) and "level" or "event": messages of the log with
+// "text", and the events of core/messages/progress.hpp. Interruptions are lines of JSON too, without a time, which a
+// signal handler cannot format.
 void log_as_json();
 bool logs_json();
 
-// The log's messages since this was made, in whatever thread, beside where they go else.
+// Collects the log's messages, of all threads, during the object's life; they are also output as usual.
 class MessagesHeard {
   public:
     struct Message {
-        int level; // spdlog's
+        int level; // spdlog's level
         std::string text;
     };
-    // While no other thread writes to the log; likewise where it ends.
+    // Construction and destruction must not run while another thread writes to the log.
     MessagesHeard();
     ~MessagesHeard();
     MessagesHeard(const MessagesHeard&) = delete;
@@ -45,16 +45,16 @@ class MessagesHeard {
 using LogValue = std::variant<std::int64_t, double, std::string>;
 using LogFields = std::vector<std::pair<std::string, LogValue>>;
 
-// A line of JSON without its end; values that are not finite become null.
+// A line of JSON without its line end; values that are not finite become null.
 std::string json_line(std::string_view kind, std::string_view name, const LogFields& fields);
 
-// Where the log is JSON, a line with "event" on standard error.
+// Outputs a line with "event" on standard error if the log is JSON.
 void log_event(std::string_view name, const LogFields& fields);
 
-// A text as JSON has it, quotes included.
+// A text as a JSON string with its quotes.
 std::string json_quoted(std::string_view text);
 
-// The message that a program ends with, with its exit code.
+// Outputs the message with which a program ends, and its exit code.
 void log_failure(const std::string& message, int exit_code);
 
 } // namespace vkfv

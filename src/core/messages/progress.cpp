@@ -17,9 +17,10 @@ using namespace std::chrono_literals;
 
 constexpr auto bar_interval = 100ms;
 constexpr auto line_interval = 2s;
-// Long enough to smooth the scheduling of a shared machine, short enough to follow a change of load.
+// The window of the rate: long enough to smooth the scheduling of a shared machine, short enough to follow a change of
+// load.
 constexpr auto rate_window = 30s;
-constexpr int line_width = 79; // an 80th character would wrap on the narrowest usual terminal
+constexpr int line_width = 79; // 80 characters would wrap on a terminal of 80 columns
 constexpr int gauge_width = 24;
 
 double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
@@ -42,7 +43,7 @@ std::string ray_rate_text(double rays_per_second) {
     }
     constexpr std::array prefixes{"", "k", "M", "G"};
     std::size_t step = 0;
-    // 999.95 would print as 1000.0.
+    // The limit is below 1000, as 999.95 would print as 1000.0.
     while (rays_per_second >= 999.95 && step + 1 < prefixes.size()) {
         rays_per_second /= 1000;
         ++step;
@@ -181,7 +182,7 @@ void Progress::show(const std::string& text, bool last) {
     }
     const int filled = total_ > 0 ? gauge_width * done_ / total_ : gauge_width;
     line = fmt::format("[{:.<{}}] {}", std::string(filled, '#'), gauge_width, line);
-    // Padded to the full width: what a longer line left behind is overwritten without control sequences.
+    // The line is padded to the full width, which overwrites the rest of a longer one without control sequences.
     *stream_ << fmt::format("\r{:<{}.{}}", line, line_width, line_width) << (last ? "\n" : "") << std::flush;
     line_open_ = !last;
 }

@@ -19,7 +19,7 @@ struct Stage {
 };
 
 struct Stages {
-    std::mutex mutex; // of all that follows
+    std::mutex mutex; // guards the variables below
     std::vector<Stage> all;
     std::size_t now = 0;
     Clock::time_point since{};

@@ -1,4 +1,4 @@
-// Where a program's time goes: the stages of its main thread, one after the other.
+// The time that a program spends in the stages of its main thread, which follow one another.
 #pragma once
 
 #include <chrono>
@@ -8,15 +8,15 @@
 
 namespace vkfv {
 
-// From now on. What goes on in other threads meanwhile is this stage's. A name that was there before goes on adding up.
-// The main thread's alone.
+// Enters a stage. Work of other threads meanwhile belongs to it too. A name used before continues to accumulate. Only
+// the main thread may call it.
 void enter_stage(std::string_view name);
 
-// The stage that was entered last, and when; for any thread. Before the first its name is empty.
+// The current stage and the time at which it was entered, for any thread. The name is empty before the first stage.
 std::pair<std::string, std::chrono::steady_clock::time_point> stage_now();
 
-// A line a stage, in the order of their beginnings: seconds and share; the last is the sum, all of the time since the
-// first call.
+// A table with a line for each stage, in the order of first entry: seconds and share; the last line is the sum, the
+// whole time since the first call.
 std::string stage_table();
 
 } // namespace vkfv

@@ -1,4 +1,4 @@
-// Numbers and texts at offsets of a file's bytes, which end as an InputError where the file does.
+// Reads numbers and texts at offsets of a file's bytes; reading beyond the file is an InputError.
 #pragma once
 
 #include "core/messages/error.hpp"
@@ -20,15 +20,16 @@ namespace vkfv {
 
 static_assert(std::endian::native == std::endian::little, "the formats are little-endian, and so is the memory");
 
-// More points than this are a damaged header (2 GiB of heights).
+// A larger number of points is taken for a damaged header (2 GiB of heights).
 inline constexpr std::uint64_t largest_point_count = std::uint64_t{1} << 28;
 
-// Packed points may be a thousand times smaller than they become; those of a measurement are not. Beyond this many
-// bytes a file holds at least a 64th of them, or somebody made it to fill the memory.
+// The limits of packed points, which may be a thousand times smaller than unpacked. Points of a measurement are not
+// packed that well: if unpacked to more than freely_packed_bytes, the file must hold at least a 64th of them; others
+// are made to exhaust the memory.
 inline constexpr std::uint64_t freely_packed_bytes = std::uint64_t{1} << 28; // 256 MiB
 inline constexpr std::uint64_t largest_packing = 64;
 
-// A finite number that takes up the whole of `text` but for blanks and a plus sign.
+// The finite number in `text`, which may have blanks around it and a plus sign; none for any other text.
 template <class Value>
 std::optional<Value> number_in(std::string_view text) {
     const auto begin = text.find_first_not_of(" \t\r\n");
@@ -74,13 +75,13 @@ class ByteReader {
         return value;
     }
 
-    // Checks sizes before anything is allocated by them.
+    // Checks sizes before memory is allocated for them.
     void check_size(std::uint64_t columns, std::uint64_t rows, std::optional<std::uint64_t> offset = {}) const {
         if (columns < 1 || rows < 1 || columns > largest_point_count || rows > largest_point_count / columns)
             fail(offset, "size", fmt::format("{} x {} points", columns, rows),
                  fmt::format("at least one point and at most {}", largest_point_count));
     }
-    // The same of points that are packed in the file: bytes of memory that they become.
+    // Checks the unpacked size (bytes of memory) of points that are packed in the file.
     void check_packing(std::uint64_t unpacked, const std::string& what) const {
         if (unpacked > freely_packed_bytes && unpacked / largest_packing > size())
             fail({}, what, fmt::format("{} bytes of heights in a file of {}", unpacked, size()),
@@ -88,7 +89,7 @@ class ByteReader {
                              largest_packing),
                  "Export a part of the surface, or the whole without packing if it is really so large.");
     }
-    // In any unit.
+    // Checks that a spacing, in any unit, is positive and finite.
     void check_spacing(double spacing, const char* key, std::optional<std::uint64_t> offset = {}) const {
         if (!(std::isfinite(spacing) && spacing > 0))
             fail(offset, key, fmt::format("{}", spacing), "a positive spacing");

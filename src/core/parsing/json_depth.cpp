@@ -22,7 +22,7 @@ void check_json_depth(std::string_view text, const std::filesystem::path& file,
     for (std::size_t at = 0; at < text.size(); ++at) {
         const char character = text[at];
         if (in_string) {
-            at += character == '\\' ? 1 : 0; // what follows ends no string
+            at += character == '\\' ? 1 : 0; // an escaped character does not end the string
             in_string = character != '"';
         } else if (character == '"') {
             in_string = true;

@@ -1,4 +1,4 @@
-// How deep the brackets of a JSON text may stand in one another.
+// Limits the depth to which the brackets of a JSON text are nested.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,13 @@
 
 namespace vkfv {
 
-// Readers that call themselves for every bracket take some kilobytes of the stack a level: this many fit into the
-// smallest stacks, and no format in use comes near.
+// The largest depth. Recursive readers take some kilobytes of stack for each level: this many fit into the smallest
+// stacks, and no format in use comes near.
 inline constexpr int most_json_depth = 100;
 
-// To be called before any JSON reader. Brackets inside strings do not count; whether the text is JSON at all, the
-// reader finds out. Throws InputError at the first bracket that is too deep: by line and column, or by its byte in the
-// file where `first_byte` says at which byte of the file the text begins.
+// Checks the depth before a JSON reader is called. Brackets inside strings do not count; whether the text is valid JSON
+// is left to the reader. Throws InputError at the first bracket that is too deep: by line and column, or by its byte in
+// the file if `first_byte` gives the byte of the file at which the text begins.
 void check_json_depth(std::string_view text, const std::filesystem::path& file,
                       std::optional<std::uint64_t> first_byte = {});
 

@@ -9,13 +9,13 @@
 namespace vkfv {
 
 struct NumberRow {
-    std::vector<double> values; // one a column
+    std::vector<double> values; // one for each column
     int line = 0;
 };
 
-// First line: the columns' names; then a row a line; empty lines are passed over. Throws InputError with line and
-// column for anything else, also for numbers that are not finite and without a row. key: what the file is for; rows:
-// "ray".
+// Reads a table: the first line has the columns' names, each further line a row; empty lines are skipped. Throws
+// InputError with line and column for anything else, also for numbers that are not finite and for a table without rows.
+// key: the key or option that named the file; row_name: the word for a row: "ray".
 std::vector<NumberRow> read_number_table(const std::filesystem::path& file,
                                          const std::vector<std::string_view>& columns, const std::string& key,
                                          const std::string& row_name);

@@ -48,7 +48,8 @@ std::string utf8_of_utf16(std::string_view bytes, ByteOrder order) {
     return text;
 }
 
-// Latin letters are a NUL and a byte each in UTF-16, and no other text has NULs.
+// The byte order of UTF-16, recognized by the NULs that Latin letters contain and other encodings do not; none for
+// other text.
 std::optional<ByteOrder> order_of_utf16(std::string_view bytes) {
     if (bytes.starts_with("\xff\xfe")) {
         return ByteOrder::little;
@@ -58,7 +59,7 @@ std::optional<ByteOrder> order_of_utf16(std::string_view bytes) {
     }
     constexpr std::size_t looked_at = 1024, least = 4;
     const std::string_view start = bytes.substr(0, std::min(bytes.size(), looked_at) / 2 * 2);
-    std::size_t nuls[2] = {0, 0}; // at even and at odd places
+    std::size_t nuls[2] = {0, 0}; // counts at even and odd places
     for (std::size_t i = 0; i < start.size(); ++i) {
         nuls[i % 2] += start[i] == '\0' ? 1u : 0u;
     }
@@ -69,7 +70,7 @@ std::optional<ByteOrder> order_of_utf16(std::string_view bytes) {
     return nuls[0] > 0 ? ByteOrder::big : ByteOrder::little;
 }
 
-// Well-formed as the Unicode standard's table 3-7 says: no overlong forms, no surrogates.
+// True for well-formed UTF-8 by the Unicode standard's table 3-7: without overlong forms and surrogates.
 bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
         const auto lead = static_cast<unsigned char>(text[i]);
@@ -104,7 +105,7 @@ std::string in_utf8(std::string_view bytes) {
     }
     std::string text;
     text.reserve(bytes.size() + bytes.size() / 8);
-    for (const char byte : bytes) { // Latin-1: a byte is its code point
+    for (const char byte : bytes) { // Latin-1: each byte is its code point
         append_utf8(text, static_cast<unsigned char>(byte));
     }
     return text;

@@ -1,4 +1,4 @@
-// Work that gives way to the rest of the program.
+// Tasks of low priority.
 #pragma once
 
 #include <future>
@@ -8,12 +8,13 @@
 
 namespace vkfv {
 
-// std::async for what is asked for much later: its thread, and those that it starts, take the cores that others leave.
+// Runs a low-priority task by std::async: its thread, and those that it starts, use the processor time that other
+// threads leave.
 template <class Task>
 auto in_background(Task task) {
     return std::async(std::launch::async, [task = std::move(task)]() mutable {
         constexpr int nicer = 10;
-        static_cast<void>(nice(nicer)); // Linux: the calling thread alone
+        static_cast<void>(nice(nicer)); // on Linux for the calling thread only
         return task();
     });
 }

@@ -17,7 +17,7 @@ JobQueue::~JobQueue() {
         waiting_.clear();
     }
     changed_.notify_all();
-    threads_.clear(); // joins them while what they use is there
+    threads_.clear(); // joins the threads while the members that they use exist
 }
 
 void JobQueue::add(std::function<void()> job) {
@@ -62,7 +62,7 @@ void JobQueue::work() {
             }
             lock.lock();
             thrown_ = thrown_ ? thrown_ : thrown;
-        } // what the job holds goes with it
+        } // the job's own data are released here
         --busy_;
         changed_.notify_all();
     }

@@ -1,4 +1,4 @@
-// Jobs that threads of their own do, while who gives them goes on.
+// A queue of jobs that run on threads of their own.
 #pragma once
 
 #include <condition_variable>
@@ -12,24 +12,24 @@
 
 namespace vkfv {
 
-// Begun in the order given; one after the other if there is one thread. After one has thrown, those that wait are
-// dropped. add() and finish() are one thread's.
+// Starts jobs in the order in which they were added; a single thread runs them one after the other. After a job has
+// thrown, waiting jobs are dropped. add() and finish() must be called by the same thread.
 class JobQueue {
   public:
-    // most_waiting: jobs that no thread has begun, at least 1; add() waits for room.
+    // most_waiting: the largest number of jobs not yet started, at least 1; add() waits for room.
     JobQueue(int threads, std::size_t most_waiting);
-    // Drops those that wait, lets the others end.
+    // Drops waiting jobs and waits for those that run.
     ~JobQueue();
     JobQueue(const JobQueue&) = delete;
     JobQueue& operator=(const JobQueue&) = delete;
 
-    // Both throw what a job has thrown.
+    // add() and finish() rethrow the exception of a job.
     void add(std::function<void()> job);
-    void finish(); // waits for all
+    void finish(); // waits for all jobs
 
   private:
     void work();
-    void rethrow(); // with the lock held
+    void rethrow(); // requires the lock
 
     std::size_t most_waiting_;
     std::mutex mutex_;

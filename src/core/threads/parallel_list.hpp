@@ -1,4 +1,4 @@
-// Shares the items of a list among threads.
+// Distributes the items of a list among threads.
 #pragma once
 
 #include "core/threads/parallel_rows.hpp"
@@ -9,15 +9,15 @@
 
 namespace vkfv {
 
-// task(k) for k = 0 .. count - 1, each by whichever thread is free, of which there are at most `most_threads`. `task`
-// must not throw.
+// Calls task(k) for k = 0 .. count - 1, each on the next free one of at most `most_threads` threads. `task` must not
+// throw.
 template <class Task>
 void parallel_items(int count, const Task& task, int most_threads = core_count()) {
     parallel_bands(
         count, 1, [&](int k, int) { task(k); }, most_threads);
 }
 
-// make(k) for k = 0 .. count - 1, likewise; in order. `make` must not throw.
+// The list of make(k) for k = 0 .. count - 1, in order, computed as by parallel_items(). `make` must not throw.
 template <class Make>
 auto parallel_list(int count, const Make& make) {
     static_assert(!std::is_same_v<decltype(make(0)), bool>, "threads would share the words of a vector<bool>");

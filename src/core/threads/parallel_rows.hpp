@@ -1,4 +1,4 @@
-// Shares the rows of an image among threads.
+// Distributes the rows of an image among threads.
 #pragma once
 
 #include "core/threads/threads.hpp"
@@ -9,8 +9,8 @@
 
 namespace vkfv {
 
-// Calls task(first, end) for `threads` ranges or fewer, one a thread, which cover 0..count once and differ little in
-// length. `task` must not throw.
+// Calls task(first, end) for at most `threads` ranges, one a thread, which cover 0..count once and have nearly equal
+// lengths. `task` must not throw.
 template <class Task>
 void parallel_shares(int count, int threads, const Task& task) {
     const int share = std::max(1, (count + threads - 1) / threads);
@@ -18,8 +18,8 @@ void parallel_shares(int count, int threads, const Task& task) {
                [&](int k) { task(k * share, count - k * share < share ? count : (k + 1) * share); });
 }
 
-// Calls task(first_row, end_row) for ranges that cover 0..rows once. `task` must not throw, and what it
-// computes for a row must not depend on the range the row is in. Small images stay on the calling thread.
+// Calls task(first_row, end_row) for ranges that cover 0..rows once. `task` must not throw, and its result for a row
+// must not depend on the range that contains the row. Small images are computed on the calling thread.
 template <class Task>
 void parallel_rows(int columns, int rows, const Task& task) {
     // Starting a thread takes tens of microseconds, as does touching this many pixels.
@@ -29,8 +29,8 @@ void parallel_rows(int columns, int rows, const Task& task) {
     parallel_shares(rows, static_cast<int>(threads), task);
 }
 
-// The same in bands of so many rows, which threads take one after the other: for rows that differ in their work, and
-// for tasks that take memory a row.
+// Calls task(first_row, end_row) for bands of so many rows, which threads take one after the other: for rows of unequal
+// work, and for tasks that need memory for each row.
 template <class Task>
 void parallel_bands(int rows, int band, const Task& task, int most_threads = core_count()) {
     std::atomic<int> next = 0;

@@ -12,9 +12,9 @@ inline int core_count() {
     return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-// work(k) for k = 0 ... threads - 1, each on a thread of its own, of which the caller's has k = 0; returns when all
-// have. `work` must not throw. Threads are started for each call, since those that a background() task starts inherit
-// that they take the cores which others leave: a pool such as that of std::execution's TBB would not.
+// Calls work(k) for k = 0 ... threads - 1, each on a thread of its own, k = 0 on the caller's; returns when all have
+// returned. `work` must not throw. Threads are started for each call, because those started by a task of
+// in_background() inherit its low priority, which those of a pool such as that of std::execution's TBB would not.
 template <class Work>
 void on_threads(int threads, const Work& work) {
     std::vector<std::jthread> others;

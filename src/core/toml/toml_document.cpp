@@ -14,7 +14,7 @@ namespace vkfv {
 
 namespace {
 
-constexpr std::size_t longest_quotation = 60; // characters of an offending value that a message repeats
+constexpr std::size_t longest_quotation = 60; // characters of an offending value that a message quotes
 
 std::string abbreviated(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
@@ -24,7 +24,7 @@ std::string abbreviated(std::string text) {
     return text;
 }
 
-// Before the parser sees the text, whose recursion has no bound of its own for names.
+// Checks the depth before the parser sees the text, as the parser's recursion has no limit for names.
 void require_shallow(std::string_view text, const SourceLocation& origin, bool with_place) {
     const auto place = too_deep_toml(text);
     if (!place) {
@@ -57,7 +57,7 @@ toml::table parse_text(std::string_view text, const std::filesystem::path& name)
     }
 }
 
-// The table of an array of tables that a key "0", "1", ... means; none: it means none.
+// The table of an array of tables that a key "0", "1", ... stands for; none for other keys.
 toml::table* element_of(toml::array& tables, std::string_view key) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
@@ -65,8 +65,8 @@ toml::table* element_of(toml::array& tables, std::string_view key) {
     return element != nullptr ? element->as_table() : nullptr;
 }
 
-// Moves `from` into `into`, table by table; what is no table on both sides is replaced. A table whose keys are numbers
-// goes into those tables of an array. Throws InputError where the array has no such table.
+// Moves `from` into `into`, table by table; other values are replaced. For an array of tables, `from` is a table whose
+// keys are the numbers of its tables. Throws InputError if the array has no such table.
 void merge(toml::table& into, toml::table&& from, const TomlOverride& given) {
     for (auto&& [key, node] : from) {
         toml::node* present = into.get(key.str());
@@ -94,7 +94,7 @@ void merge(toml::table& into, toml::table&& from, const TomlOverride& given) {
     }
 }
 
-// The same, but what is there stays.
+// Moves those values of `from` into `into` that it lacks, table by table.
 void add_missing(toml::table& into, toml::table&& from) {
     for (auto&& [key, node] : from) {
         toml::node* present = into.get(key.str());
@@ -117,7 +117,7 @@ toml::table parse_override(const TomlOverride& given) {
                                                           "0123456789_-.") == std::string::npos;
     if (key_is_plain) {
         try {
-            // A value may not smuggle further lines in.
+            // A value with further lines is not parsed as TOML, as they could set other keys.
             if (given.value.find('\n') == std::string::npos) {
                 return as_document(given.value);
             }
@@ -140,7 +140,7 @@ toml::table parse_override(const TomlOverride& given) {
                       .remedy = "Name the table and the key as the configuration file does."});
 }
 
-// Whether `path` is `ancestor`, or a key or element in it.
+// True if `path` is `ancestor`, or a key or element in it.
 bool is_within(std::string_view path, std::string_view ancestor) {
     return ancestor.empty() ||
            (path.starts_with(ancestor) &&
@@ -162,7 +162,7 @@ std::string text_of(const toml::node& node) {
     if (const auto* array = node.as_array()) {
         stream << *array;
     } else if (const auto* real = node.as_floating_point()) {
-        stream << fmt::format("{}", real->get()); // the shortest text that reads back
+        stream << fmt::format("{}", real->get()); // shortest text that reads back
     } else {
         node.visit([&](const auto& value) {
             if constexpr (toml::is_value<decltype(value)>) {

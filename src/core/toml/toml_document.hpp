@@ -1,5 +1,5 @@
-// What tables of one TOML document share: its nodes, where they stand, and what was found wrong so far. Inside of the
-// reader (toml_reader.hpp).
+// The parts that the tables of one TOML document share: its nodes, their places, and the problems found so far. It is
+// internal to the reader (toml_reader.hpp).
 #pragma once
 
 #include "core/toml/toml_reader.hpp"
@@ -16,36 +16,36 @@
 
 namespace vkfv {
 
-// "a.b" of "a" and "b"; "b" of "" and "b".
+// The dotted path: "a.b" from "a" and "b"; "b" from "" and "b".
 std::string dotted(const std::string& path, std::string_view key);
 
 // A value as messages quote it: at most a line.
 std::string text_of(const toml::node& node);
 
-// The document, and which file it came from: an override's nodes carry another origin.
+// A document and the file it came from; nodes of an override carry another origin.
 struct TomlDocument {
-    // Of a file's text, with the overrides put in their places. Throws InputError for what is not TOML, or nests deeper
+    // Parses a file's text and inserts the overrides. Throws InputError for invalid TOML, and for one nested deeper
     // than deepest_toml_nesting.
     TomlDocument(std::string_view text, std::filesystem::path name, const std::vector<TomlOverride>& overrides);
 
-    // What another file has in the table of this dotted key, where this document has nothing.
+    // Adds values that another file has in the table of this dotted key and this document lacks.
     void complete(const std::string& path, const std::filesystem::path& other_file);
 
     SourceLocation place(const toml::source_region& region) const;
 
     struct Noted {
-        std::string path; // dotted, from the root: what the problem spoils
+        std::string path; // dotted path from the root to the invalid part
         InputProblem problem;
-        // Of a missing key or table; else empty.
+        // Name and expectation of a missing key or table; else empty.
         std::string missing;  // its name
         std::string expected; // "a finite number > 0"
     };
 
-    // Whether nothing was noted at this dotted key or below.
+    // True if no problem was noted at this dotted key or below.
     bool sound(std::string_view at) const;
     bool abandoned(std::string_view at) const;
 
-    // In the order of their places: those of the file, of the command line, of other files.
+    // The problems of this file by their places, then all others in the order in which they were noted.
     std::vector<InputProblem> problems() const;
 
     toml::table root;
@@ -53,7 +53,7 @@ struct TomlDocument {
     std::set<std::filesystem::path> completed_from;
     bool collecting = false;
     std::vector<Noted> noted;
-    std::vector<std::string> abandoned_paths; // reading ended early: their other keys are neither known nor unknown
+    std::vector<std::string> abandoned_paths; // reading ended early there, so whether other keys are known is undecided
 };
 
 // The part of a TomlTable that its copies share.
@@ -69,15 +69,15 @@ struct TomlTable::State {
     std::shared_ptr<State> child(const std::string& name, const toml::table& node);
 
     InputProblem problem(std::string_view key, const toml::node* node, std::string expected, std::string remedy) const;
-    // Throws the problem; while problems are collected, the next three note it and return.
+    // Throws the problem. The next three functions note it instead while problems are collected.
     [[noreturn]] void refuse(std::string_view key, const toml::node* node, std::string expected,
                              std::string remedy) const;
     void note(std::string_view key, const toml::node* node, std::string expected, std::string remedy) const;
-    // Nothing for a key that is there: what is wrong with it was noted already.
+    // Does nothing if the key exists, as its problem was noted already.
     void note_missing(std::string_view key, const std::string& expected) const;
     void note_missing_tables(std::string_view key, const std::string& expected, const std::string& header) const;
 
-    // Of the tables that were read to their ends.
+    // Notes the unknown keys of tables that were read completely.
     void note_unknown();
 
   private:

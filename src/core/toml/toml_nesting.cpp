@@ -17,7 +17,7 @@ class Scanner {
             const char character = text_[at_];
             if (character == '"' || character == '\'') {
                 if (!skip_string(character)) {
-                    break; // without an end: the parser goes no further
+                    break; // unterminated: the parser stops here too
                 }
                 continue;
             }
@@ -33,8 +33,8 @@ class Scanner {
 
   private:
     struct Bracket {
-        bool braces = false; // an inline table; else an array
-        int depth = 0;       // within it, without the key that is being read
+        bool braces = false; // true: inline table; false: array
+        int depth = 0;       // depth within it, without the key being read
     };
 
     void take(char character) {
@@ -84,7 +84,7 @@ class Scanner {
         }
     }
 
-    // A key of the last header's table, until a bracket tells that it is the next header.
+    // Starts a key of the last header's table; a bracket will show if it is the next header instead.
     void begin_statement() {
         header_ = false;
         begun_ = false;
@@ -101,10 +101,10 @@ class Scanner {
             return;
         }
         const bool braces = character == '{';
-        if (!braces) { // of a table its keys are the level
+        if (!braces) { // a table's keys count as the level
             deepen();
         }
-        if (!too_deep_) { // so there are never more than deepest_toml_nesting
+        if (!too_deep_) { // limits the stack to deepest_toml_nesting
             open_.push_back({.braces = braces, .depth = depth_});
         }
         in_key_ = braces;
@@ -128,7 +128,7 @@ class Scanner {
         }
     }
 
-    // Whether it has an end. Strings of one line end with it.
+    // Skips a string; false if it is unterminated. A string of one line ends with the line.
     bool skip_string(char quote) {
         begun_ = true;
         const std::string_view three(quote == '"' ? "\"\"\"" : "'''");
@@ -152,7 +152,7 @@ class Scanner {
             } else if (character == quote && text_.substr(at_).starts_with(three)) {
                 at_ += 3;
                 for (int more = 0; more < 2 && at_ < text_.size() && text_[at_] == quote; ++more) {
-                    ++at_; // up to two quotes may stand before the three that end it
+                    ++at_; // up to two quotes may precede the three that end the string
                 }
                 return true;
             }
@@ -164,12 +164,12 @@ class Scanner {
     std::size_t at_ = 0;
     int line_ = 1;
     std::size_t line_start_ = 0;
-    int header_depth_ = 0; // of the tables under the last header
+    int header_depth_ = 0; // depth of the tables under the last header
     int depth_ = 1;
-    bool header_ = false; // in [a.b] or [[a.b]]
-    bool begun_ = false;  // something stands in this statement already
+    bool header_ = false; // within [a.b] or [[a.b]]
+    bool begun_ = false;  // the statement has any text yet
     bool in_key_ = true;
-    std::vector<Bracket> open_; // of the value that is being read
+    std::vector<Bracket> open_; // brackets of the value being read
     std::optional<TomlPlace> too_deep_;
 };
 

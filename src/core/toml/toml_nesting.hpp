@@ -1,5 +1,5 @@
-// How deep a TOML text nests, told before anything recurses over it: the parser, the merging of tables and the end of a
-// document all take stack by its depth.
+// Finds how deep a TOML text nests, before any recursion over it: the parser, the merging of tables and the destruction
+// of a document all need stack in proportion to the depth.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace vkfv {
 
-// Wide of every configuration (six levels), and small for every stack.
+// The limit: more than any configuration needs (six levels), and little for any stack.
 constexpr int deepest_toml_nesting = 64;
 
 struct TomlPlace {
@@ -15,9 +15,9 @@ struct TomlPlace {
     int column = 1; // from 1, in characters
 };
 
-// Where the text first nests deeper than deepest_toml_nesting; none if it does not. Every part of a dotted name, every
-// bracket and every brace is a level, except in strings and remarks. Of a text that is no TOML only what stands before
-// the first fault is looked at, as a parser does.
+// The place where the text first nests deeper than deepest_toml_nesting; none if it does not. Every part of a dotted
+// name, every bracket and every brace is a level, except in strings and comments. Invalid TOML is examined only up to
+// its first fault, where a parser stops too.
 std::optional<TomlPlace> too_deep_toml(std::string_view text);
 
 } // namespace vkfv

@@ -1,4 +1,4 @@
-// What a reader notes as wrong: values, missing keys, and last the keys that nobody asked for.
+// The problems that a reader notes: invalid values, missing keys, and last the unknown keys.
 #include "core/toml/toml_document.hpp"
 
 #include <fmt/format.h>
@@ -10,9 +10,10 @@ namespace vkfv {
 
 namespace {
 
-constexpr std::size_t most_noted = 1000; // nobody reads on; and all are compared with each other
+constexpr std::size_t most_noted = 1000; // more would not be read, and all are compared with each other
 
-// "um" of "z_step_um"; what differs in it alone is another unit of the same.
+// The key without its unit, and the unit: "z_step" and "um" of "z_step_um". Keys that differ only there state the same
+// quantity.
 std::pair<std::string_view, std::string_view> without_unit(std::string_view key) {
     const auto last = key.rfind('_');
     return last == std::string_view::npos ? std::pair(key, std::string_view())
@@ -67,7 +68,7 @@ void TomlTable::State::add(TomlDocument::Noted one) const {
     if (document->noted.size() >= most_noted) {
         throw InputError(document->problems());
     }
-    // A key that is read twice is wrong once.
+    // A key that is read twice is reported once.
     const auto same = [&](const TomlDocument::Noted& other) {
         return other.path == one.path && other.problem.where == one.problem.where;
     };
@@ -105,9 +106,9 @@ void TomlTable::State::note_missing_tables(std::string_view key, const std::stri
          .expected = expected});
 }
 
-// A missing key beside one that nobody knows: most likely the one is the other, misspelt. So they are one problem, at
-// the misspelt key's place. Near must they be both ways, and nearer where reading ended early, as keys that it would
-// have asked for stand there too.
+// Pairs a missing key with an unknown one: most likely the one is the other, misspelt. They become one problem, at the
+// misspelt key's place. Each must be the nearest to the other, and nearer still where reading ended early, as keys that
+// it would have asked for stand there too.
 void TomlTable::State::pair_missing_with_unknown(std::set<std::string>& paired) {
     const std::size_t furthest = document->abandoned(path) ? 2 : std::string::npos;
     std::vector<std::string> unknown;
@@ -151,7 +152,7 @@ void TomlTable::State::note_unknown() {
         auto unknown = problem(
             name, &node, known.empty() ? "no key here" : fmt::format("a known key (one of {})", fmt::join(known, ", ")),
             meant ? fmt::format("Did you mean \"{}\"? Correct or remove it.", *meant) : "Remove it.");
-        // An inserted override has its own origin; only the key's place is more exact than the value's.
+        // The key's place, if known, is more exact than the value's; an inserted override keeps its own origin.
         if (key.source().begin) {
             unknown.where = document->place(key.source());
         }
@@ -192,7 +193,7 @@ void TomlTable::attempt(std::string_view key, const std::function<void()>& read)
     } catch (const InputError& error) {
         state_->asked.emplace(key);
         document.abandoned_paths.push_back(path);
-        // What fails behind something that could not be read may be its consequence.
+        // An error behind an unreadable part may be its consequence and is not reported.
         if (document.sound(path)) {
             for (const auto& problem : error.problems()) {
                 document.noted.push_back({.path = path, .problem = problem, .missing = "", .expected = ""});

@@ -28,7 +28,7 @@ std::string described(const char* what, const NumberRange& range) {
     return limits.empty() ? std::string(what) : std::string(what) + " " + limits;
 }
 
-// In place of one that could not be read.
+// A harmless number in the range, in place of one that could not be read.
 double stand_in(const NumberRange& range) {
     const double middle = 0.5 * (range.minimum + range.maximum);
     const double any = std::isfinite(middle)          ? middle
@@ -45,7 +45,7 @@ std::string remedy_for_number(const std::string& path, std::string_view key, dou
 
 } // namespace
 
-// What `convert` makes of the node; nothing if the key is missing, or its value is wrong and noted.
+// The node converted by `convert`; none if the key is missing, or if its value is wrong and noted.
 template <class Convert>
 auto TomlTable::get(std::string_view key, const std::string& expected, Convert convert) const {
     using Value = decltype(convert(std::declval<const toml::node&>()));
@@ -144,7 +144,7 @@ std::optional<std::int64_t> as_integer(const toml::node& node, std::int64_t mini
     if (const auto* integer = node.as_integer()) {
         value = integer->get();
     } else if (const auto* real = node.as_floating_point()) {
-        constexpr double exact = 9007199254740992.0; // 2^53: beyond, doubles skip integers
+        constexpr double exact = 9007199254740992.0; // 2^53: larger doubles skip integers
         const double number = real->get();
         if (std::abs(number) <= exact && number == std::trunc(number)) {
             value = static_cast<std::int64_t>(number);

@@ -70,7 +70,7 @@ std::string toml_quoted(std::string_view text) {
 
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates,
                                         std::size_t most_steps) {
-    // Optimal string alignment: insertions, deletions, substitutions and swaps of neighbours cost one.
+    // The optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours cost one.
     const auto distance = [&](std::string_view other) {
         std::vector<std::size_t> before(other.size() + 1), above(other.size() + 1), row(other.size() + 1);
         for (std::size_t j = 0; j <= other.size(); ++j) {
@@ -95,7 +95,7 @@ std::optional<std::string> nearest_word(std::string_view word, const std::vector
     std::size_t smallest = furthest + 1;
     for (const auto& candidate : candidates) {
         const std::size_t steps = distance(candidate);
-        // Nothing in common: as many steps as letters.
+        // Words that differ by as many steps as they have letters have nothing in common.
         if (steps < smallest && steps < std::max(word.size(), candidate.size())) {
             smallest = steps;
             nearest = candidate;

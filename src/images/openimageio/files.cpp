@@ -1,4 +1,4 @@
-// Image files of all kinds: what images/image_file.hpp promises.
+// Image files of all kinds: implements functions of images/image_file.hpp.
 #include "core/messages/error.hpp"
 #include "images/openimageio/functions.hpp"
 #include "images/openimageio/orientation.hpp"
@@ -51,8 +51,8 @@ constexpr OIIO::TypeDesc type_of<double>() {
     return OIIO::TypeDesc::DOUBLE;
 }
 
-// What a header may ask for before a pixel is read: small images as they come, larger ones as far as the file's own
-// size speaks for them.
+// Limits of the size that a header may claim before a pixel is read: an image of more than freely_given_bytes must not
+// exceed largest_packing times the file's own size.
 constexpr double largest_pixel_count = 1 << 28;
 constexpr double freely_given_bytes = 1 << 28;
 constexpr double largest_packing = 64;
@@ -123,7 +123,7 @@ OIIO::ImageSpec flat_page(const OpenImage& image, const std::filesystem::path& p
     return spec;
 }
 
-// All but opacity.
+// Reads all channels except opacity.
 template <class Value>
 std::vector<Grid<Value>> read_all_channels(const OpenImage& image, const std::filesystem::path& path, int page) {
     const OIIO::ImageSpec spec = flat_page(image, path, page);
@@ -140,7 +140,7 @@ bool same_values(const Grid<Value>& one, const Grid<Value>& other) {
                               [](Value a, Value b) { return a == b || (std::isnan(a) && std::isnan(b)); });
 }
 
-// Grey, which some formats and palettes hold as three equal channels.
+// Reads a grey image, which some formats and palettes store as three equal channels.
 template <class Value>
 Grid<Value> read_page(const OpenImage& image, const std::filesystem::path& path, int page) {
     std::vector<Grid<Value>> channels = read_all_channels<Value>(image, path, page);
@@ -183,9 +183,9 @@ ImageStatement image_statement(const std::filesystem::path& path) {
     statement.rows = turned ? spec.width : spec.height;
     statement.channels = spec.nchannels - (opacity_channel(spec) >= 0 ? 1 : 0);
     statement.description = description_of(image);
-    // Cameras write both where an image was edited: the date of the photograph, and that of the file.
+    // Cameras write both dates, and an edited image has different ones: that of the photograph, and that of the file.
     statement.date = spec.get_string_attribute("Exif:DateTimeOriginal", spec.get_string_attribute("DateTime"));
-    // Other formats' resolution is that of a screen or of print.
+    // In other formats the resolution is that of a screen or of print.
     if (std::string_view(image.input->format_name()) == "tiff") {
         const std::string unit = spec.get_string_attribute("ResolutionUnit");
         statement.columns_per_unit = spec.get_float_attribute("XResolution");

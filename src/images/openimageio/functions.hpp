@@ -1,4 +1,4 @@
-// What the module of OpenImageIO does; images/codec.hpp says what for.
+// The functions of the OpenImageIO module; images/codec.hpp states its purpose.
 #pragma once
 
 #include "images/codec.hpp"

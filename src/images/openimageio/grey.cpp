@@ -1,4 +1,4 @@
-// Images of heights and of masks: one grey channel, of any format, by bands.
+// Images of heights and of masks: one grey channel, of any format, read by bands.
 #include "core/messages/error.hpp"
 #include "images/openimageio/functions.hpp"
 #include "images/openimageio/orientation.hpp"
@@ -14,8 +14,9 @@
 namespace vkfv::images::openimageio {
 namespace {
 
-// Packed pixels may be thousands of times smaller than they become; those of measured or drawn heights are not. An
-// image of more pixels than this holds a byte for every so many of them, or somebody made it to fill the memory.
+// The limits of packed pixels, which may be thousands of times smaller than unpacked. Measured or drawn heights are not
+// packed that well: an image of more pixels than this has at least a byte in the file for so many of them; others are
+// made to exhaust the memory.
 constexpr std::uint64_t most_packed_pixels = std::uint64_t{1} << 26; // 256 MiB of heights
 constexpr std::uint64_t most_pixels_a_byte = 64;
 
@@ -26,7 +27,7 @@ constexpr std::uint64_t most_pixels_a_byte = 64;
 
 struct Channels {
     int count = 0;
-    int grey = 0; // the first that is not opacity
+    int grey = 0; // first channel that is not opacity
     bool colour = false;
 };
 
@@ -65,12 +66,12 @@ bool read_rows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channel
                           ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, bottom, spec.z, spec.z + 1, 0,
                                              channels, OIIO::TypeDesc::FLOAT, band)
                           : input.read_scanlines(0, 0, top, bottom, spec.z, 0, channels, OIIO::TypeDesc::FLOAT, band);
-    // Rows that the file does not have may come as zeros, with an error that only this tells.
+    // Rows missing in the file may be returned as zeros, with an error that only has_error() reports.
     return read && !input.has_error();
 }
 
-// Rows are read in bands that exist in the file before room is made for the next: a header that lies about the size
-// ends at the first band that is missing. From the top.
+// Reads rows from the top in bands; memory for a band is allocated only after the previous one was found in the file,
+// so a header with a false size fails at the first missing band.
 std::vector<float> read_heights(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const Channels& channels,
                                 const std::filesystem::path& file) {
     constexpr int rows_at_once = 64;

@@ -1,6 +1,6 @@
 #include "images/openimageio/functions.hpp"
 
-// What images/codec.cpp looks for.
+// The symbol that images/codec.cpp looks up.
 extern "C" __attribute__((visibility("default"))) const vkfv::images::Codec vkfv_image_codec;
 
 namespace io = vkfv::images::openimageio;

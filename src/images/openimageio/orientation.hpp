@@ -1,4 +1,4 @@
-// Images stored lying on a side or mirrored, as cameras do, made upright.
+// Turns images upright that are stored rotated or mirrored, as cameras store them.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -10,19 +10,20 @@
 
 namespace vkfv::images::openimageio {
 
-// The header's orientation (tag 274 of TIFF 6.0 and Exif): which sides of the picture, as it is shown, the stored first
-// row and first column are. 1 (top and left) where there is none or it is none of the eight.
+// The header's orientation (tag 274 of TIFF 6.0 and Exif): the sides of the displayed picture at which the first stored
+// row and column lie. 1 (top and left) if it is missing or none of the eight.
 inline int orientation_of(const OIIO::ImageSpec& spec) {
     const int orientation = spec.get_int_attribute("Orientation", 1);
     return orientation >= 1 && orientation <= 8 ? orientation : 1;
 }
 
-// Values from the stored first row on become the picture as it is shown, row 0 lowest. From 5 on rows are columns.
+// Converts values from the first stored row onwards to the displayed picture, row 0 lowest. Orientations 5 to 8
+// exchange rows and columns.
 template <class Value, class Stored>
 Grid<Value> upright(const std::vector<Stored>& stored, int width, int height, int orientation) {
     const bool turned = orientation >= 5;
     Grid<Value> shown(turned ? height : width, turned ? width : height);
-    // Which side the stored column counts from, and the stored row, as TIFF 6.0 names them.
+    // The sides from which the stored columns and rows count, as TIFF 6.0 names them.
     const bool from_right = orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
     const bool from_bottom = orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
     std::size_t place = 0;

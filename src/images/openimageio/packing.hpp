@@ -1,4 +1,4 @@
-// Whether an image of the size that a header states fits into its file.
+// Decides whether an image of the size stated in a header fits into its file.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -8,8 +8,8 @@
 
 namespace vkfv::images::openimageio {
 
-// No compression in use makes images smaller by more than this factor: a header that asks for more is wrong. Tiles
-// count whole, as they are read; small images have room for a large one.
+// False if the header claims more than any compression in use can achieve. Tiles count whole, as they are read whole;
+// small images may have one large tile.
 inline bool packing_is_possible(const OIIO::ImageSpec& spec, double file_bytes) {
     constexpr double impossible_packing = 1e4;
     constexpr double freely_given_tile = 1 << 24;

@@ -1,4 +1,4 @@
-// Letters as pixels: what images/picture.hpp promises.
+// Letters as pixels: implements functions of images/picture.hpp.
 #include "core/messages/error.hpp"
 #include "images/openimageio/functions.hpp"
 

@@ -18,9 +18,9 @@ namespace {
 
 using OIIO::Filesystem::IOProxy;
 
-// A file by position. OpenImageIO's own proxy of a file hands its stream to some readers, which begin wherever another
-// reader, or they themselves at an earlier try, left it: with OpenImageIO 2.4 every JPEG began at byte 4096. There is
-// no stream here, and a reader that wants one refuses a proxy of another type.
+// A file read by position. OpenImageIO's own file proxy passes its stream to some readers, which start wherever another
+// reader, or an earlier attempt of their own, left it: with OpenImageIO 2.4 every JPEG began at byte 4096. This proxy
+// has no stream, and a reader that needs one refuses a proxy of another type.
 class FileProxy : public IOProxy {
   public:
     explicit FileProxy(const InputFile& file) : IOProxy("", Read), file_(file) {}
@@ -30,7 +30,7 @@ class FileProxy : public IOProxy {
     std::size_t pread(void* to, std::size_t count, std::int64_t place) override {
         return place < 0 ? 0 : file_.read_at(static_cast<std::uint64_t>(place), {static_cast<char*>(to), count});
     }
-    // Some readers ask for a byte at a time, one after the other: these come out of a block.
+    // Some readers request single bytes in sequence: these are served from a block.
     std::size_t read(void* to, std::size_t count) override {
         char* const into = static_cast<char*>(to);
         std::size_t done = 0;
@@ -48,7 +48,7 @@ class FileProxy : public IOProxy {
     }
 
   private:
-    // Bytes from this place on, as many as the block has; empty at the end of the file.
+    // The bytes of the block from this place on; empty at the end of the file.
     std::string_view block_from(std::int64_t place) {
         const auto inside = [&] {
             return place >= block_place_ && place < block_place_ + static_cast<std::int64_t>(block_.size());
@@ -101,7 +101,8 @@ constexpr std::array marks = {Mark{"II*\0"sv, "tiff"},
                               Mark{"8BPS"sv, "psd"}};
 constexpr std::size_t mark_bytes = 16;
 
-// By their endings, since most of them begin like a TIFF, and as a TIFF they are a thumbnail.
+// Raw formats are recognized by their endings, since most of them begin like a TIFF, which would be read as a
+// thumbnail.
 constexpr std::array raw_endings = {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dng", ".erf", ".iiq",
                                     ".kdc", ".mef", ".mos", ".mrw", ".nef", ".nrw", ".orf", ".pef",
                                     ".raf", ".rw2", ".rwl", ".sr2", ".srf", ".srw", ".x3f"};
@@ -109,7 +110,8 @@ constexpr std::array raw_endings = {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dn
 constexpr const char* kinds =
     "an image: TIFF, PNG, JPEG, JPEG 2000, WebP, BMP, PGM, OpenEXR, HDR, GIF, TGA, DPX or PSD";
 
-// A JPEG is decoded from memory, and has at most 65535 x 65535 pixels of three bytes, which packing makes fewer.
+// The limit of a JPEG, which is decoded from memory: it has at most 65535 x 65535 pixels of three bytes, and
+// compression makes them fewer.
 constexpr std::uint64_t largest_jpeg = std::uint64_t{1} << 30;
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& found, const std::string& expected,
@@ -145,7 +147,7 @@ void open_input(OpenImage& image, const std::string& format, const std::filesyst
     }
     OIIO::ImageSpec wish;
     wish.attribute("oiio:UnassociatedAlpha", 1); // grey values and colours must not be multiplied by opacity
-    // Named in the configuration too: where there is one, OpenImageIO 2.4 looks for it nowhere else.
+    // The proxy is also named in the configuration, because OpenImageIO 2.4 then looks for it only there.
     IOProxy* proxy = image.proxy.get();
     wish.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     OIIO::ImageSpec spec;
@@ -180,7 +182,7 @@ OpenImage open_image(const std::filesystem::path& path) {
                "Save it as TIFF.");
     }
     // These formats are read whole: JPEG is decoded from memory, and the headers of the others are checked before the
-    // library allocates what they claim.
+    // library allocates the sizes that they claim.
     if (jpeg || looks_like_exr(beginning) || looks_like_pnm(beginning)) {
         auto owned = std::make_unique<std::string>(file->read());
         OpenImage image = open_image(*owned, path);

@@ -23,23 +23,24 @@ using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 using physics::f64::Surface;
 
-// The disc may be this much larger than what is found to pass. A closer bound takes longer to prove and saves at most
-// 4 % of the rays.
+// The proved disc may exceed the known one by this factor. A closer bound takes longer to prove and saves at most 4 %
+// of the rays.
 constexpr double margin = 1.02;
 
 EmissionBox all_rays(bool symmetric, const DiscSource& source, const EmissionMiddle& middle) {
     EmissionBox whole{};
     whole[from_axis] = {0, source.radius};
     whole[from_middle] = {0, middle.reach + std::abs(middle.shift) * source.radius};
-    // About the axis all turns are the same, and so are directions on either side of the start's meridian.
+    // A symmetric train treats all rotations about the axis alike, and so directions on either side of the start's
+    // meridian.
     whole[azimuth] = symmetric ? Range{0, pi} : Range{-pi, pi};
     whole[turn] = symmetric ? Range{} : Range{-pi, pi};
     whole[spectral] = source.monochromatic ? Range{} : Range{-1, 1};
     return whole;
 }
 
-// Distance from the middle of the farthest ray that passes among a few sampled in a box; 0 if none does. It often
-// starts at the source's rim, towards it or away from it.
+// The distance from the middle of the farthest ray that passes among a few sampled in a box; 0 if none does. The
+// farthest ray often starts at the source's rim, towards or away from the rim.
 double sampled_distance(std::span<const Surface> train, double source_distance, const EmissionMiddle& middle,
                         const EmissionBox& box) {
     std::array<double, Affine::coordinates> at{};
@@ -65,10 +66,10 @@ bool is_within_hemisphere(const Aim& aim, double source_radius) {
     return std::abs(aim.shift) * source_radius + aim.sine <= 1;
 }
 
-// The smallest disc that holds the rim, of those that are within the hemisphere. The size of a disc is a convex
-// function of its shift, as the largest of many distances: search by thirds.
+// The smallest disc within the hemisphere that contains the rim. The size of a disc is a convex function of its shift,
+// as the largest of many distances, so ternary search finds its minimum.
 Aim smallest_aim(std::span<const RimRay> rim, double source_radius) {
-    double low = -1 / source_radius; // beyond it the middle leaves the hemisphere
+    double low = -1 / source_radius; // for steeper shifts the middle leaves the hemisphere
     double high = 1 / source_radius;
     constexpr int rounds = 40;
     for (int round = 0; round < rounds; ++round) {
@@ -84,7 +85,7 @@ Aim smallest_aim(std::span<const RimRay> rim, double source_radius) {
     const auto fits = [&](double candidate) {
         return is_within_hemisphere({.shift = candidate, .sine = margin * aim_at(rim, candidate).sine}, source_radius);
     };
-    if (!fits(shift)) { // the nearest one that does, if any
+    if (!fits(shift)) { // take the nearest shift within the hemisphere, if any
         double inside = 0;
         for (int round = 0; round < rounds; ++round) {
             const double middle = 0.5 * (inside + shift);
@@ -97,15 +98,15 @@ Aim smallest_aim(std::span<const RimRay> rim, double source_radius) {
 
 } // namespace
 
-// From each point of the source, searches the rim around the direction that aims at the centre of the field stop.
+// The search goes from points of the source, around the direction that aims at the centre of the field stop.
 std::vector<RimRay> sampled_rim(std::span<const Surface> train, bool symmetric, const DiscSource& source,
                                 const RayTransfer& towards_stop) {
     const auto rim_from = [&](glm::dvec2 position) {
-        const int azimuths = symmetric ? 13 : 26; // over half a turn, or all of it
+        const int azimuths = symmetric ? 13 : 26; // over half a turn or a whole one
         const double slope = -towards_stop.a / towards_stop.b;
         const glm::dvec2 centre = slope * position / std::sqrt(1 + slope * slope * glm::dot(position, position));
         std::vector<RimRay> rim;
-        // Mirrored azimuths are the same for a symmetric train and a point of the x axis.
+        // For a symmetric train and a point on the x axis, mirrored azimuths are equivalent.
         for (int i = 0; i < azimuths; ++i) {
             const double angle = symmetric ? pi * i / (azimuths - 1) : 2 * pi * i / azimuths;
             const auto cosines = [&](double radius) {
@@ -130,8 +131,8 @@ std::vector<RimRay> sampled_rim(std::span<const Surface> train, bool symmetric, 
     };
     std::vector<RimRay> all;
     for (const glm::dvec2& direction : search_directions(symmetric)) {
-        // The angle grows towards the rim of what the pupil sees of the source; beyond it no light passes. Two finer
-        // rounds around the best point so far find that rim to 1/50 of the source.
+        // The angle grows towards the rim of the region of the source that the pupil sees; no light passes from beyond.
+        // Two finer rounds around the best point so far find that rim to 1/50 of the source.
         constexpr int points = 6;
         double low = 0;
         double high = source.radius;
@@ -163,13 +164,13 @@ Aim aim_at(std::span<const RimRay> rim, double shift) {
     return result;
 }
 
-// Branch and bound: the box with the rays farthest from their middle is halved until either bounds prove that none of
-// its rays passes, or they are hardly farther than a ray known to pass. However the search ends, the farthest of all
+// Branch and bound: the box with the rays farthest from their middle is halved until bounds prove that none of its rays
+// passes, or until its rays are hardly farther than a ray known to pass. However the search ends, the farthest of all
 // remaining boxes bounds the light.
 Aim proved_aim(std::span<const Surface> train, bool symmetric, const DiscSource& source, const Aim& known,
                double reach) {
-    constexpr int most_boxes = 10000; // 0.1 s; a microscope's illuminator takes 2000
-    constexpr double thin = 1e-3;     // of the distance: no use in halving what is still left then
+    constexpr int most_boxes = 10000; // takes 0.1 s; a microscope's illuminator takes 2000 boxes
+    constexpr double thin = 1e-3;     // relative width below which halving a box no longer helps
     const EmissionMiddle middle{.shift = known.shift, .reach = reach};
     const BundleTracer tracer(train, source.distance, middle);
     double sufficient = margin * known.sine;
@@ -183,7 +184,7 @@ Aim proved_aim(std::span<const Surface> train, bool symmetric, const DiscSource&
         EmissionBox box = left.top();
         Range& distance = box[from_middle];
         const bool is_thin = distance.low > (1 - thin) * distance.high && distance.low > sufficient;
-        // Rays inside the known disc need not be excluded.
+        // Only rays outside the known disc must be excluded.
         distance.low = std::max(distance.low, sufficient);
         const auto cut = tracer.may_pass(box);
         if (cut && is_thin) {

@@ -19,11 +19,11 @@ using physics::f64::Ray;
 using physics::f64::real3;
 using physics::f64::Surface;
 
-// What is found in the finite places that are searched may be exceeded between them: by less than this share, as
-// outlines of pupils are smooth but for the corners where two edges meet.
+// Extremes between the finitely many sampled places exceed the sampled ones by less than this factor, as outlines of
+// pupils are smooth except at corners where two edges meet.
 constexpr double search_margin = 1.02;
 
-// None: there is no such direction.
+// The ray in the frame in which light enters the train; none if the cosines are no direction.
 std::optional<Ray> entering(const Imaging& imaging, glm::dvec2 position, double height, glm::dvec2 cosines) {
     const double axial_squared = 1 - glm::dot(cosines, cosines);
     if (axial_squared <= 0) {
@@ -100,10 +100,10 @@ Outline outline_at(const Imaging& imaging, glm::dvec2 position) {
     constexpr std::size_t azimuths = 48;
     Outline outline{
         .position = position, .centre = imaging.chief_cosines(position), .radii = {}, .step = 2 * pi / azimuths};
-    // About a point of the x axis a symmetric cone's lower half is the upper one mirrored.
+    // From a point on the x axis, the lower half of a symmetric cone is the mirror image of the upper half.
     const bool half = imaging.symmetric && position.y == 0;
     for (std::size_t i = 0; i < (half ? azimuths / 2 : azimuths); ++i) {
-        // Beyond 1 + |centre| no direction cosines exist.
+        // No direction cosines exist beyond 1 + |centre|.
         const auto radius = farthest(1 + glm::length(outline.centre), [&](double candidate) {
             return imaging.excess(outline.position, 0, outline.cosines(i, candidate));
         });
@@ -116,8 +116,8 @@ Outline outline_at(const Imaging& imaging, glm::dvec2 position) {
 }
 
 std::vector<ConeRay> fill_cone(const Outline& outline, int panels) {
-    // Gauss-Legendre over [-1, 1] (Abramowitz and Stegun, table 25.4) in the share of the cone that a ring
-    // encloses: exact for squared aberrations up to the 30th power of the pupil's radius.
+    // Gauss-Legendre nodes and weights over [-1, 1] (Abramowitz and Stegun, table 25.4), used in the share of the cone
+    // that a ring encloses: exact for squared aberrations up to the 30th power of the pupil's radius.
     constexpr std::array<std::pair<double, double>, 8> rings = {{{-0.9602898564975363, 0.1012285362903763},
                                                                  {-0.7966664774136267, 0.2223810344533745},
                                                                  {-0.5255324099163290, 0.3137066458778873},
@@ -144,14 +144,15 @@ std::vector<ConeRay> fill_cone(const Outline& outline, int panels) {
     return rays;
 }
 
-// The landing points are all but linear in the height, so Gauss and Newton's method on their deviations from the
-// centroid converges in two steps; three leave rounding.
+// The landing points are almost linear in the height, so Gauss and Newton's method on their deviations from the
+// centroid converges in two steps; three leave rounding only.
 double least_spot(const Imaging& imaging, const Outline& outline) {
-    // mm, for the central difference: landing points curve far less than rounding over a micrometre.
+    // The step (mm) of the central difference: over a micrometre landing points deviate from a line by less than
+    // rounding.
     constexpr double difference = 1e-3;
     struct Sample {
         glm::dvec2 landing;
-        glm::dvec2 rate; // of the landing with the height
+        glm::dvec2 rate; // derivative of the landing point by height
         double weight;
     };
     const auto cone = fill_cone(outline);
@@ -190,9 +191,8 @@ double least_spot(const Imaging& imaging, const Outline& outline) {
 
 // A ray of position x and slope s on a plane at height t above the object plane crosses the paraxial entrance pupil at
 // p x + (1 + p t) s, up to a factor, where x now stands on the object plane and p is the pupil's curvature. Light that
-// reaches the detector comes from within the field; of all of it, over field, azimuth and t, the largest such crossing
-// is the gate's radius. The crossing is convex in s and t, so the rim of each cone and the two ends of t hold the
-// largest.
+// reaches the detector starts within the field; the acceptance bound is the largest such crossing over field, azimuth
+// and t. The crossing is convex in s and t, so its maximum lies on the rim of a cone and at an end of t.
 double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest) {
     constexpr int field_points = 12;
     const auto largest_of = [&](glm::dvec2 position) {

@@ -12,14 +12,14 @@ namespace {
 
 struct Sample {
     glm::dvec2 p = glm::dvec2(0);
-    double path = 0;    // W, mm
-    double defocus = 0; // what a plane higher by 1 mm adds
+    double path = 0;    // wavefront W, mm
+    double defocus = 0; // change of W by a plane higher by 1 mm
     double weight = 0;
-    glm::dvec2 place = glm::dvec2(0); // in the paraxial object plane, mm
+    glm::dvec2 place = glm::dvec2(0); // mm, in the paraxial object plane
     glm::dvec2 slope = glm::dvec2(0);
 };
 
-// Takes the mean and the fitted tilt out of the paths and of the defocus.
+// Subtracts the mean and the fitted tilt from the paths and from the defocus.
 void level(std::vector<Sample>& samples) {
     Sample mean;
     for (const Sample& sample : samples) {

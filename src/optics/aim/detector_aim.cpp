@@ -21,30 +21,31 @@ using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 using physics::f64::Surface;
 
-// Of the disc's rays, that the rectangle may take and still save something.
+// The largest share of the disc's rays that the rectangle may need and still be worth using.
 constexpr double worthwhile = 0.98;
-// Over what samples are off. They stand on the rims themselves, but 15 degrees of azimuth apart: what goes with three
-// times the azimuth may be 8 % more between two of them (1 / cos 22.5 degrees).
+// The factor on errors found by sampling. Samples stand on the rims themselves, but 15 degrees of azimuth apart: a term
+// of three times the azimuth may be 8 % larger between two of them (1 / cos 22.5 degrees).
 constexpr double sampling_margin = 1.25;
-// Of the whole: of devices' float, 1e-6, and more.
+// The relative allowance for rounding: far more than the 1e-6 of a device's float.
 constexpr double rounding = 1e-3;
 
-// Light of a disc through a train of revolution, to a plane.
+// Light from a disc through a rotationally symmetric train to a plane; lengths in mm.
 struct SampledLight {
     std::span<const Surface> train;
     DiscSource source;
-    double shift = 0;    // of directions' middles, 1/mm
-    double farthest = 1; // from its middle
-    double plane = 0;    // behind the train's last vertex
+    double shift = 0;    // 1/mm, direction middle per position (Aim)
+    double farthest = 1; // largest distance of transverse cosines from that middle
+    double plane = 0;    // mm behind the train's last vertex
 };
 
 struct PassedRay {
     glm::dvec2 place{0};
-    glm::dvec2 direction{0}; // cosines, from their middle
+    glm::dvec2 direction{0}; // transverse direction cosines relative to their middle
     glm::dvec2 end{0};
 };
 
-// From a place on the x axis, at an angle to it: from the middle outwards to the rim of what passes.
+// Passing rays from a point on the x axis whose directions lie at an angle (rad) to it, from the middle to the rim of
+// the passing light.
 std::vector<PassedRay> sampled_from(const SampledLight& way, double distance_from_axis, double angle) {
     constexpr int distances = 12;
     const std::vector<double> wavelengths =
@@ -81,8 +82,8 @@ std::vector<PassedRay> sampled_from(const SampledLight& way, double distance_fro
     return passed;
 }
 
-// From the axis to the outermost place whose light passes, which may be far within the source, and all round. As
-// everything is the same all round, places are on the x axis.
+// Passing rays from the axis to the outermost place whose light passes, which may lie far within the source, at all
+// azimuths of direction. By symmetry it is enough to start on the x axis.
 std::vector<PassedRay> sampled(const SampledLight& way) {
     constexpr int starts = 13, azimuths = 13, steps = 64, halvings = 6;
     const auto angle = [](int k) { return pi * k / (azimuths - 1); };
@@ -112,14 +113,16 @@ std::vector<PassedRay> sampled(const SampledLight& way) {
     return all;
 }
 
-// Two vectors of each ray, the second about the first times `factor`, and the farthest that it is off.
+// A linear relation between two vectors of each ray: the second is `factor` times the first, with the largest deviation
+// `error`.
 struct Proportion {
     double factor = 0;
     double error = 0;
 };
 using Vectors = std::vector<std::pair<glm::dvec2, glm::dvec2>>;
 
-// With the least error, which is a convex function of the factor. Infinite of no rays.
+// The factor of the least error within 10 % of the least-squares factor; the error is a convex function of it. The
+// error is infinite without rays.
 Proportion proportion_of(const Vectors& vectors) {
     if (vectors.empty()) {
         return {.factor = 1, .error = std::numeric_limits<double>::infinity()};
@@ -139,7 +142,7 @@ Proportion proportion_of(const Vectors& vectors) {
     }
     double low = 0.9 * products / squares;
     double high = 1.1 * products / squares;
-    constexpr int rounds = 40; // each leaves two thirds
+    constexpr int rounds = 40; // each round keeps two thirds of the interval
     for (int round = 0; round < rounds; ++round) {
         const double a = low + (high - low) / 3;
         const double b = high - (high - low) / 3;
@@ -159,10 +162,10 @@ double slope_of(double sine) {
 
 } // namespace
 
-// Above and below focus a ray is on a line, so that it is farthest from where it should be at one of the ends.
+// A ray is a straight line above and below focus, so its deviation is largest at one end of the range of heights.
 std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim& disc) {
     const std::array ends = {-light.greatest_defocus, light.greatest_defocus};
-    Vectors lit; // where light arrives, and its direction
+    Vectors lit; // places where light arrives, with directions
     for (const double height : ends) {
         for (const PassedRay& ray : sampled({.train = light.illumination,
                                     .source = light.source,
@@ -174,7 +177,7 @@ std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim&
     }
     const Proportion per_length = proportion_of(lit);
     const double direction_error = sampling_margin * per_length.error;
-    if (!(direction_error < disc.sine)) { // the source is imaged onto the specimen, or there is no light
+    if (!(direction_error < disc.sine)) { // the source is imaged onto the specimen, or no light passes
         return std::nullopt;
     }
     const double lit_radius = (disc.sine + direction_error) / std::abs(per_length.factor);
@@ -188,10 +191,10 @@ std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim&
     for (const PassedRay& ray : sampled(imaging)) {
         sine = std::max(sine, glm::length(ray.direction));
     }
-    // What is seen at one end crosses the plane of the other further out.
+    // Light seen at one end of the range of heights crosses the plane at the other end further out.
     constexpr double steepest = 0.99;
     imaging.source.radius += 2 * light.greatest_defocus * slope_of(std::min(sampling_margin * sine, steepest));
-    Vectors seen; // where light starts, and where it lands
+    Vectors seen; // places where light starts, with its landing places
     for (const double height : ends) {
         imaging.source.distance = light.front_vertex_height - height;
         for (const PassedRay& ray : sampled(imaging)) {
@@ -202,7 +205,7 @@ std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim&
     const glm::dvec2 field =
         (light.detector_half_sides + sampling_margin * magnification.error) / std::abs(magnification.factor);
     const glm::dvec2 wanted = (1 + rounding) * (std::abs(per_length.factor) * field + direction_error);
-    // In steps, so that machines whose libraries round otherwise agree; they are parts of one stack.
+    // Rounding up to steps makes machines whose libraries round differently agree, so that they can share a stack.
     constexpr double steps = 1 << 20;
     const glm::dvec2 sides = glm::min(glm::ceil(wanted * steps) / steps, glm::dvec2(disc.sine));
     const double share = 4 * sides.x * sides.y / (pi * disc.sine * disc.sine);

@@ -6,10 +6,10 @@ namespace vkfv::optics {
 
 std::optional<DetectorView::Found> DetectorView::find(glm::dvec2 cosines) const {
     constexpr int most_steps = 25;
-    constexpr double enough = 1e-11; // mm in the object; rounding leaves 1e-14 of a train's length
+    constexpr double enough = 1e-11; // mm in the object; rounding is 1e-14 of a train's length
     glm::dvec2 point = guess;
     auto landing = imaging.trace(point, plane, cosines, 0);
-    glm::dmat2 rate(magnification); // of the landing with the point
+    glm::dmat2 rate(magnification); // derivative of the landing point by the object point
     for (int step = 0; landing && step < most_steps; ++step) {
         const glm::dvec2 miss = landing->position - detector;
         const glm::dvec2 move = -(glm::inverse(rate) * miss);

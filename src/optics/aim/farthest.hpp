@@ -1,4 +1,4 @@
-// How far something goes on: the edge of a pupil along a line, say.
+// Finds the edge of a region along a line, for example of a pupil.
 #pragma once
 
 #include <algorithm>
@@ -7,21 +7,22 @@
 
 namespace vkfv::optics {
 
-// Two places between which the edge lies.
+// Two places on a line between which the edge lies.
 struct Bracket {
     double inside;
     double outside;
 };
 
-// Narrows the bracket to `enough`: excess() <= 0 inside, > 0 outside; where it is finite on both sides the straight
-// line between them tells where to look next, else the middle. I. F. D. Oliveira, R. H. C. Takahashi, "An enhancement
-// of the bisection method average performance preserving minmax optimality", ACM Trans. Math. Softw. 47 (2021), with
-// its k1 = 0.2 / width, k2 = 2 and n0 = 1: never more than one step beyond bisection, and few where excess() is smooth.
+// Narrows a bracket to the width `enough`, with excess() <= 0 inside and > 0 outside. Where the excess is finite on
+// both sides, the next place follows from linear interpolation, else it is the middle. I. F. D. Oliveira, R. H. C.
+// Takahashi, "An enhancement of the bisection method average performance preserving minmax optimality", ACM Trans.
+// Math. Softw. 47 (2021), with its k1 = 0.2 / width, k2 = 2 and n0 = 1: never more than one step beyond bisection, and
+// few steps where excess() is smooth.
 template <class Excess>
 Bracket narrowed(Bracket bracket, double excess_inside, double excess_outside, const Excess& excess, double enough) {
     auto& [inside, outside] = bracket;
     const double width = outside - inside;
-    double reach = 2 * width; // of the bracket that bisection would have left, with one step to spare
+    double reach = 2 * width; // width that bisection would have reached, with one step to spare
     while (outside - inside > enough) {
         const double middle = 0.5 * (inside + outside);
         double next = middle;
@@ -36,7 +37,7 @@ Bracket narrowed(Bracket bracket, double excess_inside, double excess_outside, c
         if (!(next > inside && next < outside)) {
             next = middle;
             if (!(next > inside && next < outside)) {
-                break; // neighbouring numbers
+                break; // no number lies between the two
             }
         }
         const double here = excess(next);
@@ -47,14 +48,14 @@ Bracket narrowed(Bracket bracket, double excess_inside, double excess_outside, c
     return bracket;
 }
 
-// The largest t of [0, limit] with excess(t) <= 0, to rounding: looked for inward in steps of limit / 32, then as
-// bisection finds it. Where it is only between two steps, and not at 0, it is not found. None: at no step.
-// excess(t): by how much something is beyond its edge there, in any unit; continuous makes it quick. Infinite: beyond,
-// without a measure. bisections: what they leave of a step; 45 of them all but rounding.
+// The largest t of [0, limit] with excess(t) <= 0, to rounding: the search goes inward in steps of limit / 32, then by
+// bisection. A region that lies between two steps, and not at 0, is missed. None if no step is inside. excess(t): the
+// distance beyond the edge in any unit; a continuous function makes the search fast, infinity means outside without a
+// measure. bisections: halvings of a step; 45 of them leave rounding only.
 template <class Excess>
 std::optional<double> farthest(double limit, const Excess& excess, int bisections = 45) {
     constexpr int steps = 32;
-    double beyond = 0; // excess at the step before
+    double beyond = 0; // excess at the previous step
     for (int step = steps; step >= 0; --step) {
         double inside = limit * step / steps;
         const double here = excess(inside);
@@ -66,7 +67,7 @@ std::optional<double> farthest(double limit, const Excess& excess, int bisection
             return inside;
         }
         double outside = limit * (step + 1) / steps;
-        // Bisection by what is known of the edge: the same number, of few values of excess().
+        // The bisection reuses the narrowed bracket: it gives the same number with few calls of excess().
         const double enough = std::ldexp(outside - inside, -std::min(bisections, 46));
         const Bracket edge = narrowed({inside, outside}, here, beyond, excess, enough);
         for (int i = 0; i < bisections; ++i) {

@@ -21,23 +21,23 @@ namespace {
 using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 
-// What tells one ray of the light from another.
+// The coordinates that distinguish the rays of the light.
 enum HullCoordinate : std::size_t {
-    place_radius,      // share of the disc's
+    place_radius,      // share of the disc's radius
     place_azimuth,     // rad
-    direction_azimuth, // rad, against the place's
-    cone_share,        // of the way to the rim
+    direction_azimuth, // rad, relative to place_azimuth
+    cone_share,        // share of the distance from the cone's middle to its rim
     wavelength,        // x of physics::Light
     disc_distance,     // mm
     hull_coordinates,
 };
 using HullPlace = std::array<double, hull_coordinates>;
 
-// The range of a coordinate, and the points of the grid in it.
+// The range of a coordinate, and the number of grid points in it.
 struct HullAxis {
     Range range;
     int points = 1;
-    bool turns = false; // a whole turn: its ends are one
+    bool turns = false; // true for a whole turn, whose ends coincide
 
     double at(int k) const {
         return points > 1 ? range.low + (range.high - range.low) * k / (turns ? points : points - 1) : range.low;
@@ -53,7 +53,7 @@ HullAxes axes_of(const DiscLight& light, ConePart part) {
     axes[wavelength] = {light.spectral, points(light.spectral, light.symmetric ? 5 : 3)};
     axes[disc_distance] = {light.distance, points(light.distance, 2)};
     axes[cone_share] = part == ConePart::whole ? HullAxis{{0, 1}, 5} : HullAxis{{1, 1}, 1};
-    if (light.symmetric) { // about the axis all turns are the same, and both sides of the meridian
+    if (light.symmetric) { // symmetry fixes the place's azimuth and halves that of the direction
         axes[place_azimuth] = {{0, 0}, 1};
         axes[direction_azimuth] = {{0, pi}, 9};
     } else {
@@ -63,7 +63,7 @@ HullAxes axes_of(const DiscLight& light, ConePart part) {
     return axes;
 }
 
-// The light that leaves a place of the disc in one wavelength.
+// The cone of light that leaves a place of the disc at one wavelength.
 class Cone {
   public:
     Cone(const DiscLight& light, const HullPlace& at)
@@ -71,8 +71,8 @@ class Cone {
                                 glm::dvec2(std::cos(at[place_azimuth]), std::sin(at[place_azimuth]))),
           distance_(at[disc_distance]), spectral_(at[wavelength]) {}
 
-    // Of the rays from a middle one, which passes, in a direction: that at a share of the way to the last one that
-    // passes. None: no ray of the cone is found.
+    // The ray in the direction `angle` (rad) from a passing middle ray, at a share of the distance to the last ray that
+    // passes. None if no ray of the cone is found.
     std::optional<PassingRay> ray_at(double angle, double share) const {
         const auto middle = middle_of_light();
         if (!middle) {
@@ -85,7 +85,7 @@ class Cone {
         for (int k = 0; k < doublings && excess(limit) <= 0; ++k) {
             limit *= 2;
         }
-        // Within the rim, which rounding may put on either side of an edge.
+        // The factor keeps the ray within the rim, which rounding may put on either side of an edge.
         const double rim = (1 - 1e-9) * farthest(limit, excess, 30).value_or(0);
         return passed(*middle + share * rim * along);
     }
@@ -99,7 +99,7 @@ class Cone {
     }
     double excess_at(glm::dvec2 slope) const { return excess_of(light_.train, ray_of(slope), spectral_); }
 
-    // Where light is expected or, if none passes there, the mean of what passes about there.
+    // The slope at which light is expected or, if none passes there, the mean of passing slopes around it.
     std::optional<glm::dvec2> middle_of_light() const {
         const glm::dvec2 expected = light_.middle + light_.towards * start_;
         if (excess_at(expected) <= 0) {
@@ -146,7 +146,7 @@ class Cone {
     double spectral_;
 };
 
-constexpr double nothing = -1; // less than any measure
+constexpr double nothing = -1; // below any measure
 
 struct HullPoint {
     HullPlace at{};
@@ -158,18 +158,18 @@ double measure_at(const DiscLight& light, const RayMeasure& measure, const HullP
     return ray ? measure(*ray) : nothing;
 }
 
-// Up by steps in random directions, longer after one that leads up and shorter after one that does not: where edges
-// meet the measure has ridges, which steps along the coordinates do not follow.
+// Climbs by steps in random directions, which grow after a step uphill and shrink after one downhill: where edges meet,
+// the measure has ridges that steps along the coordinates do not follow.
 double climbed(const HullAxes& axes, HullPoint from, const std::function<double(const HullPlace&)>& measure) {
     constexpr int most_steps = 400;
     constexpr double longer = 1.5, shorter = 0.96, shortest = 1e-4;
-    std::mt19937_64 random(1); // the same on every machine
-    double size = 0.5;         // of the grid's spacing
+    std::mt19937_64 random(1); // fixed seed, for equal results on every machine
+    double size = 0.5;         // in units of the grid's spacing
     for (int step = 0; step < most_steps && size > shortest; ++step) {
         HullPoint next = from;
         for (std::size_t which = 0; which < axes.size(); ++which) {
             const HullAxis& axis = axes[which];
-            const double way = std::ldexp(static_cast<double>(random() >> 11), -52) - 1; // from -1 to 1
+            const double way = std::ldexp(static_cast<double>(random() >> 11), -52) - 1; // uniform in [-1, 1)
             next.at[which] += size * way * axis.spacing();
             if (!axis.turns) {
                 next.at[which] = std::clamp(next.at[which], axis.range.low, axis.range.high);
@@ -183,7 +183,7 @@ double climbed(const HullAxes& axes, HullPoint from, const std::function<double(
     return from.measure;
 }
 
-// By what the adversary's last steps and a device's float may leave, and to the next of 256 steps an octave.
+// Rounds up to the next of 256 steps an octave, after an allowance for the adversary's last steps and a device's float.
 double rounded_up(double value) {
     constexpr double left = 1.003;
     int exponent = 0;

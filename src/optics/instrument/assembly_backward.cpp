@@ -1,4 +1,4 @@
-// The instrument with its light turned round, for paths that start at the detector.
+// The reversed form of the instrument, for paths that start at the detector.
 #include "optics/instrument/assembly.hpp"
 
 #include "core/threads/parallel_list.hpp"
@@ -15,12 +15,13 @@ using physics::f64::Surface;
 
 namespace {
 
-constexpr double outside_margin = 1.02; // outlines are searched at finitely many places: see apertures.cpp
+constexpr double outside_margin = 1.02; // outlines are sampled at finitely many places: see apertures.cpp
 constexpr double inside_margin = 0.99;
-// Towards the field's edge the region from which all light comes may shrink to this share of its size on the axis.
+// Towards the field's edge the region of crossings that certainly receive light may shrink to this share of its size on
+// the axis.
 constexpr double inside_share = 0.97;
 
-// Where the light of an outline's rim lands on the detector, and its slope there.
+// The position (mm) and slope on the detector of a ray on an outline's rim.
 struct Rim {
     glm::dvec2 position;
     glm::dvec2 slope;
@@ -32,7 +33,7 @@ std::vector<Rim> rims_at_detector(const Imaging& imaging, const Outline& outline
         if (outline.radii[azimuth] == 0) {
             continue;
         }
-        // Within the rim, which rounding may put on either side of an edge.
+        // The factor keeps the ray within the rim, which rounding may put on either side of an edge.
         const glm::dvec2 cosines = outline.cosines(azimuth, (1 - 1e-9) * outline.radii[azimuth]);
         physics::f64::Ray ray{};
         ray.position = glm::dvec3(outline.position, -imaging.working_distance);
@@ -44,7 +45,7 @@ std::vector<Rim> rims_at_detector(const Imaging& imaging, const Outline& outline
     return rims;
 }
 
-// The smallest and the largest |curvature * position + slope| on a cone's rim; the smallest is 0 where some of it is
+// The smallest and the largest |curvature * position + slope| on a cone's rim; the smallest is 0 if part of the cone is
 // dark.
 std::pair<double, double> crossings(const Outline& outline, double curvature) {
     double least = std::numeric_limits<double>::infinity();
@@ -59,15 +60,16 @@ std::pair<double, double> crossings(const Outline& outline, double curvature) {
     return {least, most};
 }
 
-// The exit pupil as the detector sees it: a disc of slopes about per_position times the position.
+// The exit pupil as the detector sees it: a disc of slopes about per_position times the position on the detector.
 struct ExitPupil {
-    double per_position = 0; // how the chief ray's slope grows with its position on the detector, 1/mm
-    double radius = 0;       // of the disc, in slope: no light comes from outside
-    double rim = 0;          // its edge, in slope; 0: no circle, or not the same all over the field
+    double per_position = 0; // 1/mm, slope of the chief ray per position on the detector
+    double radius = 0;       // radius of the disc in slope; no light comes from outside
+    double rim = 0;          // radius of the pupil's edge in slope; 0: no circle, or not the same all over the field
 };
 
-// A circle's rims have the same distance from its middle: of small changes of per_position, that which leaves least of
-// their differences, as |slope - per_position position| is linear in it there.
+// The value of per_position that makes the rims' distances from the pupil's centre most equal, as those of a circle
+// are. For small changes |slope - per_position position| is linear in per_position, so the differences are a linear
+// fit.
 double with_level_rims(double per_position, const std::vector<Rim>& rims) {
     double count = 0, distances = 0, rates = 0, products = 0, squares = 0;
     for (const Rim& rim : rims) {
@@ -94,7 +96,7 @@ ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double fie
     };
     add({field_half_width, 0}, 1);
     if (!imaging.symmetric) {
-        add({0, 0}, -1); // a tilted detector sees all pupils from aside
+        add({0, 0}, -1); // a tilted detector sees all pupils obliquely
     }
     ExitPupil pupil;
     pupil.per_position = glm::dot(mean_slope, mean_position) / glm::dot(mean_position, mean_position);
@@ -125,18 +127,18 @@ ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double fie
         most = std::max(most, hull);
         least = std::min(least, hulls.least_pupil_rim(pupil.per_position, pupil.radius));
     }
-    // Of rims that are taken for a circle. Uneven ones would be of no use, nor do harm: the disc holds all light
-    // anyway.
+    // The least ratio of smallest to largest rim at which the pupil counts as a circle. Otherwise the rim serves no
+    // purpose and is left out: the disc contains all light anyway.
     constexpr double level = 0.99;
     pupil.rim = !all.empty() && least > level * most ? sum / static_cast<double>(all.size()) : 0;
     return pupil;
 }
 
-// The source as points of the specimen see it, as crossings of their rays.
+// The source as points of the specimen see it, in crossings of their rays (BackwardOptics).
 struct SeenSource {
-    double outer = 0;        // no light comes from outside this
-    double inner = 0;        // all light comes from inside this
-    double inner_radius = 0; // mm, of the field in which `inner` holds
+    double outer = 0;        // no light comes from outside this crossing
+    double inner = 0;        // all light inside this crossing comes from the source
+    double inner_radius = 0; // mm, radius of the field in which `inner` holds
 };
 
 SeenSource seen_source(const Imaging& seen, double seen_radius) {
@@ -164,11 +166,11 @@ SeenSource seen_source(const Imaging& seen, double seen_radius) {
             .inner_radius = inside_margin * seen_radius * std::max(sure_points, 0) / field_points};
 }
 
-// Light between the specimen and the source, and where it crosses as its slopes at the paraxial object plane say:
+// Light between the specimen and the source, and its crossings, from slopes at the paraxial object plane:
 // BackwardOptics.
 class SourceLight {
   public:
-    // to_source must outlive this. reach: the crossing, about as large as expected.
+    // The caller keeps to_source alive. reach: the approximate size of the crossing.
     SourceLight(const std::vector<Surface>& to_source, const AxialLayout& layout, const DetectorHulls& hulls,
                 double source_position, double reach)
         : light_{.train = to_source,
@@ -181,12 +183,13 @@ class SourceLight {
                  .symmetric = !has_displaced(to_source)},
           source_position_(source_position), working_distance_(layout.working_distance) {}
 
-    // Of light from within field_radius, mm, at any of the heights.
+    // The largest crossing of light from within field_radius (mm) at any of the heights (mm).
     double largest_crossing(double field_radius, const Range& heights) const {
         return greatest_of(from(field_radius, heights), ConePart::rim,
                            [&](const PassingRay& ray) { return crossing(ray); });
     }
-    // On the rims of the cones from within field_radius on the object plane; none is larger than `largest`.
+    // The least crossing on the rims of the cones from within field_radius (mm) on the object plane; no crossing
+    // exceeds `largest`.
     double least_rim(double field_radius, double largest) const {
         return largest - greatest_of(from(field_radius, {}), ConePart::rim,
                                      [&](const PassingRay& ray) { return std::max(0.0, largest - crossing(ray)); });
@@ -209,8 +212,7 @@ class SourceLight {
     double working_distance_;
 };
 
-// The outline of a disc of this radius is the last surface; a ring light stands behind its cover glass, if there is
-// one.
+// The train ends with the outline of a disc of this radius (mm); for a ring light it holds the cover glass at most.
 PlacedSurfaces specimen_to_source(const InstrumentDescription& description, const AxialLayout& layout,
                                   const Illumination& illumination, double radius) {
     PlacedSurfaces train = reversed(illumination.train);
@@ -226,12 +228,12 @@ PlacedSurfaces specimen_to_source(const InstrumentDescription& description, cons
     return train;
 }
 
-// The ring light as backward paths draw points of it. A cover glass moves light sideways by less than its thickness
-// where it is the denser medium: a ring wider by that, all round, has all that shines.
+// Sets the ring light from which backward paths draw points. A cover glass shifts light sideways by less than its
+// thickness where it is the denser medium: a ring widened by that, all round, contains all points that emit.
 void draw_ring(physics::f64::BackwardOptics& optics, const InstrumentDescription& description,
                const AxialLayout& layout, const physics::f64::Instrument& constants,
                const std::vector<Surface>& to_source) {
-    double from_front = 0; // to where the light enters the train
+    double from_front = 0; // distance to the frame in which light enters the train
     for (std::size_t i = 1; i < to_source.size(); ++i) {
         from_front += to_source[i].distance;
     }
@@ -248,7 +250,7 @@ void draw_ring(physics::f64::BackwardOptics& optics, const InstrumentDescription
                        "Use estimator = \"forward\", or another glass.");
             }
         }
-        // The flatter light meets the band, the farther along it a step aside leads.
+        // The more grazing the light is at the band, the farther a sideways shift moves its point along the band.
         const double flattest = std::max(optics.ring_cosine, 1e-2);
         optics.ring.half_width += std::max(2.0, 1 / flattest) * description.cover_glass->thickness;
         optics.ring.fill = 1;
@@ -283,8 +285,8 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
     auto& optics = turned.optics;
     optics.pupil_radius = pupil.radius;
     turned.pupil_rim = pupil.rim;
-    // Half a turn about x and light the other way turn (x, y) into (x, -y) and slopes (s, t) into (-s, t): the pupil's
-    // crossing, slope - per_position * position, changes its sign alone.
+    // Half a turn about x and the opposite direction turn (x, y) into (x, -y) and slopes (s, t) into (-s, t): the
+    // pupil's crossing, slope - per_position * position, only changes its sign.
     optics.pupil_position = pupil.per_position;
 
     if (description.source.ring) {
@@ -306,17 +308,17 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
                            seen_radius);
     };
     SeenSource seen = seen_through(to_source);
-    constexpr double any_slope = 1; // where light of the reference wavelength does not come from the source
+    constexpr double any_slope = 1; // serves if no light of the reference wavelength comes from the source
     const auto light_through = [&](const std::vector<Surface>& train) {
         return SourceLight(train, layout, hulls, optics.source_position, seen.outer > 0 ? seen.outer : any_slope);
     };
-    // Light that is scattered more than once may come from beside what the detector sees, as far as seen_radius.
+    // Light that is scattered more than once may come from outside the detector's field, up to seen_radius.
     optics.source_outer = std::max(seen.outer, light_through(to_source).largest_crossing(
                                                    std::max(seen_radius, hulls.field_radius()), hulls.heights()));
-    // Sure of a rectangle is what the circle in it sends.
+    // For a rectangle, only light of its inscribed circle is certain.
     const std::vector<Surface> to_inner = source.rectangle ? to_disc(source.inner_radius()) : to_source;
     seen = source.rectangle ? seen_through(to_inner) : seen;
-    // Other wavelengths have other rims, and losses must be traced.
+    // With several wavelengths rims differ, and losses require tracing, so no light is certain.
     const bool nothing_sure =
         !description.spectrum.monochromatic() || (instrument.features & physics::f64::FEATURE_LOSSES) != 0;
     if (!nothing_sure && seen.inner > 0) {

@@ -17,7 +17,8 @@ Range spectral_range(const Spectrum& light, const Spectrum& whole) {
     return {x(light.longest_um), x(light.shortest_um)};
 }
 
-// Half a turn about x and light the other way: places (x, y) become (x, -y), slopes (s, t) become (-s, t).
+// The light reversed: half a turn about x and the opposite direction turn places (x, y) into (x, -y), slopes (s, t)
+// into (-s, t).
 DiscLight light_of_detector(const InstrumentDescription& description, const AxialLayout& layout,
                             const ImagingTrain& placed, const MeasuredImaging& measured) {
     const Imaging& imaging = placed.imaging;
@@ -54,7 +55,7 @@ DetectorHulls::DetectorHulls(const InstrumentDescription& description, const Axi
                                                                                       description.greatest_defocus},
       working_distance_(layout.working_distance), gate_position_(imaging.imaging.pupil_curvature) {}
 
-// A ray's crossing is linear in the plane's height, so that one of the ends holds the largest.
+// A ray's crossing is convex in the plane's height, so its maximum is at one of the ends.
 double DetectorHulls::gate_radius() const {
     return greatest_of(light_, ConePart::rim, [&](const PassingRay& ray) {
         const auto crossing = [&](double height) {

@@ -16,7 +16,7 @@ using physics::f64::Surface;
 
 namespace {
 
-// A whole part moved: what was given against `from` then stands the same way against `to`.
+// Moves a whole part: its pose relative to `from` becomes its pose relative to `to`.
 void move(PlacedSurfaces& part, const Pose& from, const Pose& to) {
     const glm::dmat3 turn = to.axes * glm::transpose(from.axes);
     for (PlacedSurface& placed : part) {
@@ -35,7 +35,7 @@ double source_distance_of(const InstrumentDescription& description, const Prescr
     return *distance;
 }
 
-// The objective's pupil as it is seen from the back, paraxially (mm).
+// The objective's paraxial pupil seen from the back (mm).
 struct BackPupil {
     double distance = 0; // behind the objective's last vertex, in the illumination's direction
     double radius = 0;
@@ -48,13 +48,13 @@ BackPupil back_pupil_of(const AxialLayout& layout, const ImagingTrain& imaging) 
     const RayTransfer back_to_stop = transfer_to_surface(surfaces_of(straight_backward), stop_backward);
     const EntrancePupil back_pupil = entrance_pupil(back_to_stop);
     const double stop_radius = std::sqrt(imaging.objective[imaging.aperture_stop].surface.semi_diameter_squared);
-    // The stop's image has 1 / a its size; a = 0 has none. What stands on the vertex is no further away than
-    // 0.
+    // The stop's image has 1 / a its size; there is none for a = 0. A pupil on the vertex has the distance 0, even at
+    // infinite curvature.
     return {.distance = back_to_stop.b == 0 ? 0 : 1 / back_pupil.curvature,
             .radius = stop_radius / std::abs(back_to_stop.a)};
 }
 
-// How the source is imaged into the objective's pupil. Lengths in mm.
+// The image of the source in the objective's pupil. Lengths in mm.
 struct PupilFilling {
     double to_objective = 0; // from the illuminator's last vertex to the objective's
     double magnification = 0;
@@ -66,7 +66,7 @@ PupilFilling fill_pupil(const InstrumentDescription& description, const Prescrip
                         const BackPupil& pupil, const ParaxialImage& source_image, double efl_objective) {
     const BeamSplitter& splitter = description.splitter;
     PupilFilling result;
-    // The cube's glass makes the way longer.
+    // The cube's glass shifts the source's image away.
     const double glass_shift = splitter.kind == BeamSplitter::Kind::cube
                                    ? splitter.size * (1 - 1 / splitter.glass.index(description.spectrum.reference_um))
                                    : 0;
@@ -98,7 +98,7 @@ PupilFilling fill_pupil(const InstrumentDescription& description, const Prescrip
     return result;
 }
 
-// Unfolded, from `illuminator_last` on.
+// Fold mirrors of the illumination in the unfolded space, placed behind `illuminator_last`.
 std::vector<Fold> place_folds(const InstrumentDescription& description, const AxialLayout& layout,
                               const Pose& illuminator_last, double splitter_from_illuminator) {
     std::vector<Fold> folds;
@@ -127,7 +127,7 @@ PlacedSurface illumination_aperture(const AxialLayout& layout, const Pose& sourc
     return aperture;
 }
 
-// From the source to the specimen, linked from `entry` on.
+// The train from the source to the specimen, linked from `entry`.
 struct JoinedTrain {
     PlacedSurfaces surfaces;
     int before_splitter = 0;
@@ -146,7 +146,7 @@ JoinedTrain join_train(const InstrumentDescription& description, const AxialLayo
         append(train.surfaces,
                plate(description, downward(placed.height + placed.half_size), splitter.size, splitter.glass,
                      Medium::air(), splitter.semi_diameter.value_or(placed.half_size), name_of(Part::beam_splitter)));
-        ++train.before_splitter; // the first face
+        ++train.before_splitter; // the cube's first face
     }
     append(train.surfaces, reversed(imaging.objective));
     append(train.surfaces, reversed(layout.cover));
@@ -155,16 +155,16 @@ JoinedTrain join_train(const InstrumentDescription& description, const AxialLayo
     return train;
 }
 
-// Of the field stop's image on the specimen.
+// The signed magnification of the field stop's image on the specimen.
 double field_stop_magnification(const AxialLayout& layout, const std::vector<Surface>& train, std::size_t stop_index) {
     const RayTransfer before = transfer_to_surface(train, stop_index);
     const RayTransfer whole =
         transfer_of_train(train).then(free_space(layout.working_distance, layout.object_index.centre));
-    // whole = after * before, so after = whole * before^-1; its first element is the stop's magnification.
+    // From whole = after * before follows after = whole * before^-1, whose first element is the stop's magnification.
     return whole.a * before.d - whole.b * before.c;
 }
 
-// What of the detector's field the field stop's image leaves dark.
+// Warns if the field stop's image leaves part of the detector's field dark.
 std::vector<std::string> warning_of_field_stop(const AxialLayout& layout, const Surface& stop, double magnification) {
     const double lit_radius = std::abs(magnification) * std::sqrt(stop.semi_diameter_squared);
     if (!(lit_radius < layout.field_half_diagonal)) {
@@ -175,7 +175,7 @@ std::vector<std::string> warning_of_field_stop(const AxialLayout& layout, const 
                         lit_radius, layout.field_half_diagonal)};
 }
 
-// stop: that the samples of the light are taken about.
+// stop: index of the surface about whose centre light is sampled.
 Aim aim_of(const InstrumentDescription& description, const Prescription& prescribed, const std::vector<Surface>& train,
            std::size_t stop, double source_distance) {
     const bool straight = !has_displaced(train);
@@ -186,7 +186,7 @@ Aim aim_of(const InstrumentDescription& description, const Prescription& prescri
         free_space(source_distance + train.front().distance).then(transfer_to_surface(train, stop));
     const std::vector<RimRay> rim = sampled_rim(train, straight, source, towards_stop);
     if (!description.directed_emission && !rim.empty()) {
-        return {}; // the hemisphere; that some light passes is all there is to know
+        return {}; // the hemisphere, as it is known that some light passes
     }
     const Aim aim = best_aim(train, straight, source, rim);
     if (!(aim.sine > 0)) {
@@ -249,7 +249,7 @@ Illumination place_illuminator(const InstrumentDescription& description, const A
                               std::back_inserter(result.warnings));
         }
     }
-    // Without a field stop the last surface limits the field as well as any.
+    // Without a field stop the last surface serves as the limit of the field.
     result.aim = aim_of(description, prescribed, surfaces, field_stop.value_or(result.illuminator.size() - 1),
                         result.source_distance);
     return result;

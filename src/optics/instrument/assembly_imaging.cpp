@@ -31,7 +31,7 @@ PlacedSplitter place_splitter(const InstrumentDescription& description, const Ax
     if (splitter.kind == BeamSplitter::Kind::plate) {
         placed.surfaces =
             plate(description, placed.pose, splitter.size, splitter.glass, Medium::air(), splitter.semi_diameter, name);
-        // What its coating reflects is the splitter's reflectance.
+        // The splitter's reflectance already contains the reflection of the coated side.
         placed.surfaces.front().surface.flags &= ~(physics::f64::SURFACE_FRESNEL | physics::f64::SURFACE_LAYER);
     } else if (splitter.kind == BeamSplitter::Kind::cube) {
         placed.surfaces = plate(description, Pose{}.along_z(placed.height - placed.half_size), splitter.size,
@@ -59,7 +59,7 @@ std::vector<Fold> place_folds(const InstrumentDescription& description, const Ax
     return folds;
 }
 
-// The beam splitter, then the fold mirrors, which stand behind it.
+// Appends the beam splitter, then the fold mirrors, which stand behind it.
 void append_infinity_space(PlacedSurfaces& train, const InstrumentDescription& description,
                            const PlacedSplitter& splitter, const std::vector<Fold>& folds) {
     const auto stand = [&](double distance, const PlacedSurfaces& surfaces) {
@@ -158,7 +158,7 @@ MeasuredImaging measure_imaging(const InstrumentDescription& description, const 
     const auto focus = [&](const Outline& outline) {
         return best_focus(imaging, layout.magnification, outline, nodes);
     };
-    // In opposite directions, so that a tilted field is no curved one.
+    // The mean over opposite directions keeps a tilt of the field from counting as curvature.
     const auto focus_all_round = [&](double distance) {
         const auto directions = search_directions(imaging.symmetric);
         const auto heights = parallel_list(static_cast<int>(directions.size()), [&](int i) {

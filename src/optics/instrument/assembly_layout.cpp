@@ -10,7 +10,7 @@ namespace vkfv::optics {
 
 namespace {
 
-// The objective without its cover glass, the tube lens, and their focal lengths.
+// Places the objective without its cover glass and the tube lens, and computes their focal lengths.
 AxialLayout place_lenses(const InstrumentDescription& description) {
     AxialLayout layout;
     layout.air = spectral_index(Medium::air(), description.spectrum);
@@ -33,7 +33,7 @@ AxialLayout place_lenses(const InstrumentDescription& description) {
     const RayTransfer tube_lens_transfer = transfer_of(layout.straight_tube_lens);
     layout.efl_objective = focal_length(objective_transfer);
     layout.efl_tube_lens = focal_length(tube_lens_transfer);
-    // In the medium before the objective.
+    // The focal distance is reduced by the index: multiply by that of the medium before the objective.
     layout.working_distance = layout.object_index.centre * front_focal_distance(objective_transfer);
     layout.detector_distance = back_focal_distance(tube_lens_transfer);
     if (!(layout.working_distance > 0 && std::isfinite(layout.working_distance))) {
@@ -63,7 +63,7 @@ AxialLayout lay_out(const InstrumentDescription& description) {
     layout.field_corner = {half_width, half_width * pixels.rows / pixels.columns};
     layout.field_half_diagonal = glm::length(layout.field_corner);
 
-    // A plate of thickness t shortens the way by t (1 - n0 / n).
+    // A plate of thickness t and index n raises the focus by t (1 - n0 / n) in a medium of index n0.
     const double free_distance = layout.working_distance;
     layout.objective_front = free_distance;
     if (description.cover_glass) {

@@ -10,14 +10,14 @@ namespace vkfv::optics {
 
 namespace {
 
-// From any point of the band the ball about what is lit lies within this cone about the band's normal: its middle is
-// off the normal by at most the half width, and no point of the ball is nearer than this. A cover glass moves light
-// sideways, by less than its thickness if it is the denser medium; else near total reflection by any length, and then
-// all light is kept.
+// The sine of a cone about the band's normal that contains, from any point of the band, the ball around the lit region:
+// the ball's centre is off the normal by at most the half width, and no point of the ball is nearer than `nearest`. A
+// cover glass shifts light sideways by less than its thickness if it is the denser medium; a rarer one shifts light
+// near total reflection by any length, so then the whole hemisphere serves.
 double ring_emission_sine(const InstrumentDescription& description, const AxialLayout& layout) {
     const RingLightDescription& ring = *description.source.ring;
     const Spectrum& spectrum = description.spectrum;
-    constexpr double margin = 1.5; // around the detector's field
+    constexpr double margin = 1.5; // factor on the detector's field
     const double lit_radius =
         std::hypot(ring.lit_radius.value_or(margin * layout.field_half_diagonal), description.greatest_defocus);
     const double nearest = ring.distance - lit_radius;
@@ -33,12 +33,12 @@ double ring_emission_sine(const InstrumentDescription& description, const AxialL
     if (may_reflect_totally || !(nearest > 0 && shift < distance)) {
         return 1;
     }
-    // The line of the light passes what it lights at the distance `shift`.
+    // A ray that the cover glass shifts aims past its target at the distance `shift`.
     const double angle = std::atan2(aside, nearest) + std::asin(shift / distance);
     return angle < 0.5 * pi ? std::sin(angle) : 1;
 }
 
-// aim_distance: from the plane of best focus to where the light enters the train.
+// aim_distance: mm, from the plane of best focus to the frame in which light enters the train.
 physics::f64::RingLight ring_constants(const RingLightDescription& ring, double aim_distance) {
     physics::f64::RingLight constants{};
     constants.aim_distance = aim_distance;

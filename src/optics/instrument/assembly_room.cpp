@@ -27,20 +27,21 @@ void add_part(std::vector<Element>& elements, const PlacedSurfaces& surfaces, Pa
     }
 }
 
-// In a mirror's space stands what lies behind it in the light's direction, for the illumination what lies
-// before.
+// Mirrors the elements from `first` on into the folded space: those behind the mirror in the light's direction, or
+// before it in the illumination.
 void fold_back(std::vector<Element>& elements, std::size_t first, const Pose& mirror) {
     for (std::size_t i = first; i < elements.size(); ++i) {
         elements[i].pose = elements[i].pose.mirrored_in(mirror);
     }
 }
 
-// From the source to the splitter, folded at that too.
+// The illumination from the source to the splitter, folded at its mirrors and at the splitter.
 FoldedElements fold_illumination(const InstrumentDescription& description, const PlacedSplitter& splitter,
                                  const Illumination& illumination) {
     FoldedElements folded = {.elements = {}, .source_pose = illumination.source_pose};
     add_part(folded.elements, illumination.illuminator, Part::illuminator);
-    for (const Fold& mirror : illumination.folds) { // from the illuminator on: each shows all before it
+    // Mirrors are applied from the illuminator on, as each one folds all elements before it.
+    for (const Fold& mirror : illumination.folds) {
         fold_back(folded.elements, 0, mirror.mirror.pose);
         folded.source_pose = folded.source_pose.mirrored_in(mirror.mirror.pose);
         folded.elements.push_back(make_element(Kind::mirror, mirror.mirror, Part::fold_mirror));
@@ -90,7 +91,7 @@ FoldedElements fold(const InstrumentDescription& description, const AxialLayout&
     add_part(elements, layout.cover, Part::cover_glass);
     add_part(elements, imaging.objective, Part::objective);
     std::ranges::move(splitter_elements(description, layout, imaging.splitter), std::back_inserter(elements));
-    std::vector<std::pair<std::size_t, Pose>> mirrors; // first element behind, unfolded plane
+    std::vector<std::pair<std::size_t, Pose>> mirrors; // index of the first element behind, unfolded mirror plane
     for (const Fold& mirror : imaging.folds) {
         elements.push_back(make_element(Kind::mirror, mirror.mirror, Part::fold_mirror));
         mirrors.emplace_back(elements.size(), mirror.mirror.pose);
@@ -119,7 +120,7 @@ std::vector<PlacedMesh> place_meshes(const InstrumentDescription& description, c
             vertex = element.pose.point(vertex);
             vertex.z -= measured.best_focus_offset;
         }
-        // An interface like those of the lenses, with their coating.
+        // A mesh has interfaces like those of the lenses, with the same coating.
         mesh.surface = plate(description, Pose{}, 0, element.glass, element.surrounding, std::nullopt, element.name)
                            .front()
                            .surface;

@@ -14,7 +14,8 @@ double FieldCurvature::height(double x, double y) const {
 }
 
 FieldCurvature field_curvature(const FirstOrder& first_order) {
-    constexpr double least_difference = 0.05; // of the squared distances: less tells rounding, not a fourth power
+    // relative, of squared distances; smaller ones yield rounding, not a quartic term
+    constexpr double least_difference = 0.05;
     const double edge = first_order.field_edge * first_order.field_edge;
     const double corner = glm::dot(first_order.field_corner, first_order.field_corner);
     if (!(edge > 0) || !std::isfinite(first_order.field_curvature)) {

@@ -24,12 +24,13 @@ using physics::f64::Surface;
 
 constexpr double airy_factor = 0.6098350; // first zero of J1 over 2 pi
 
-// An edge other than the stop's counts as clipping from this share of the light on: less is the rounding of tables.
+// The share of the rim from which an edge other than the stop's counts as clipping; smaller shares are rounding of
+// tables.
 constexpr double least_clipped_share = 0.02;
-// As assemble() warns of darker corners.
+// Corners darker than this are reported with the lenses that clip them; assemble() warns of them at the same limit.
 constexpr double least_relative_light = 0.9;
 
-// A ray at the detector: where it lands, its direction (of length index) and its optical path from the object.
+// A ray's position on the detector (mm), and its share of the light.
 struct Arrival {
     glm::dvec2 position;
     double weight = 0;
@@ -42,7 +43,8 @@ Ray ray_from(const Imaging& imaging, glm::dvec2 position, double height, glm::dv
     return ray;
 }
 
-// Those of the cone that arrive, their weights adding up to 1. No aperture stops them: the outline has.
+// The rays of the cone that arrive, their weights normalized to 1. Apertures are not traced, as the outline already
+// respects them.
 std::vector<Arrival> arrivals(const Imaging& imaging, const Outline& outline, const std::vector<ConeRay>& cone,
                               double height) {
     std::vector<Arrival> list;
@@ -62,7 +64,7 @@ std::vector<Arrival> arrivals(const Imaging& imaging, const Outline& outline, co
     return list;
 }
 
-// Shares of the cone, each with the eight rings of fill_cone.
+// The number of equal shares of the cone, each with the eight rings of fill_cone().
 constexpr int cone_panels = 3;
 
 CardinalPoints cardinal_points(const Prescription& prescription, const Spectrum& spectrum) {
@@ -78,10 +80,11 @@ CardinalPoints cardinal_points(const Prescription& prescription, const Spectrum&
             .back_principal_plane = planes.back};
 }
 
-// What stops the rays just outside the rim.
+// The edges that stop the rays just outside the rim, with their shares of the rim, the largest first.
 std::vector<Clipping> clipping(const Imaging& imaging, const Outline& outline, const Instrument& instrument,
                                std::size_t aperture_stop) {
-    constexpr double outside = 1e-6; // of the radius: beyond the rim's bisection, short of any other edge
+    // A relative step and one in cosines: beyond the rim's bisection error, short of any other edge.
+    constexpr double outside = 1e-6;
     std::vector<Clipping> list;
     for (std::size_t azimuth = 0; azimuth < outline.radii.size(); ++azimuth) {
         const glm::dvec2 cosines = outline.cosines(azimuth, outline.radii[azimuth] * (1 + outside) + outside);
@@ -139,7 +142,7 @@ Imaging imaging_of(const Instrument& instrument) {
 PointImage point_image(const Imaging& imaging, const Outline& outline, double height,
                        std::span<const SpectralNode> spectrum) {
     PointImage image{.position = outline.position};
-    if (!(outline.area() > 0)) { // nothing arrives: nothing is defined
+    if (!(outline.area() > 0)) { // without light no figure is defined
         image.centroid = glm::dvec2(NAN);
         image.rms_spot = NAN;
         return image;
@@ -168,16 +171,16 @@ PointImage point_image(const Imaging& imaging, const Outline& outline, double he
 
 namespace {
 
-// What all figures are measured on.
+// The optics and reference data that all figures share.
 struct Setting {
     const InstrumentDescription& description;
     const Instrument& instrument;
     Imaging imaging;
-    std::vector<SpectralNode> nodes;     // of the spectrum
+    std::vector<SpectralNode> nodes;     // nodes of the spectrum
     std::vector<SpectralNode> reference; // the reference wavelength alone
-    std::size_t stop = 0;                // of the imaging train's surfaces
-    std::size_t objective_end = 0;       // likewise, behind the objective
-    double height = 0;                   // of the plane of best focus
+    std::size_t stop = 0;                // index of the stop in the imaging train
+    std::size_t objective_end = 0;       // index in the imaging train, behind the objective
+    double height = 0;                   // mm, height of the plane of best focus
     Outline on_axis{};
 };
 
@@ -189,7 +192,7 @@ Setting setting_of(const InstrumentDescription& description, const Instrument& i
         .imaging = imaging_of(instrument),
         .nodes = spectral_nodes(description.spectrum.bins, constants.spectrum_centre, constants.spectrum_half_width),
         .reference = {{.spectral = 0, .wavelength_um = 1 / std::sqrt(constants.spectrum_centre), .weight = 1}}};
-    std::ranges::stable_sort(setting.nodes, {}, &SpectralNode::wavelength_um); // of several sources they overlap
+    std::ranges::stable_sort(setting.nodes, {}, &SpectralNode::wavelength_um); // spectra of several sources overlap
     // The cover glass' two surfaces stand before the objective's.
     const auto& objective = description.objective.surfaces;
     const std::size_t objective_first = description.cover_glass ? 2 : 0;
@@ -201,7 +204,7 @@ Setting setting_of(const InstrumentDescription& description, const Instrument& i
     return setting;
 }
 
-// Paraxially.
+// Finds the paraxial pupils.
 void find_pupils(ImageQuality& quality, const Setting& setting) {
     const Imaging& imaging = setting.imaging;
     const std::span<const Surface> train = imaging.train;
@@ -220,7 +223,7 @@ void find_pupils(ImageQuality& quality, const Setting& setting) {
     quality.exit_pupil_radius = stop_radius * std::abs(exit.magnification);
 }
 
-// By the rim of the cone on the axis, in the plane of best focus.
+// Measures the aperture and the beam of the cone from the axis in the paraxial object plane, by its rim.
 void measure_axial_cone(ImageQuality& quality, const Setting& setting) {
     const std::span<const Surface> train = setting.imaging.train;
     const Outline& on_axis = setting.on_axis;
@@ -228,7 +231,7 @@ void measure_axial_cone(ImageQuality& quality, const Setting& setting) {
     double sine_square = 0;
     double height_square = 0;
     glm::dvec2 beam_centre(0);
-    glm::dvec2 cone_centre(0); // off the normal of a tilted detector
+    glm::dvec2 cone_centre(0); // nonzero with a tilted detector
     for (std::size_t azimuth = 0; azimuth < on_axis.radii.size(); ++azimuth) {
         const Ray rim = ray_from(setting.imaging, {0, 0}, 0, on_axis.cosines(azimuth, on_axis.radii[azimuth]));
         const glm::dvec3 direction = trace_through(train, rim, 0).ray.direction;
@@ -243,7 +246,7 @@ void measure_axial_cone(ImageQuality& quality, const Setting& setting) {
     quality.f_number = 0.5 / quality.image_aperture;
 }
 
-// Signed, of the centroids at the reference wavelength, against that of the axis at `origin`.
+// The signed magnification of centroids at the reference wavelength, relative to the axial centroid `origin`.
 double real_magnification(const Setting& setting, const Imaging& imaging, const Outline& outline, glm::dvec2 origin) {
     const glm::dvec2 way = point_image(imaging, outline, setting.height, setting.reference).centroid - origin;
     return glm::dot(way, outline.position) / glm::dot(outline.position, outline.position);
@@ -252,10 +255,10 @@ double real_magnification(const Setting& setting, const Imaging& imaging, const 
 struct Worst {
     PointImage image;
     Outline outline;
-    double distortion = 0; // share by which the image lies farther out than magnification times the point's distance
+    double distortion = 0; // relative excess of the image's distance over magnification times the object's
 };
 
-// The point with the largest spot.
+// The image of largest spot among the points.
 Worst worst_of(const Setting& setting, const std::vector<glm::dvec2>& points, glm::dvec2 axis_centroid) {
     const Imaging& imaging = setting.imaging;
     const auto all = parallel_list(static_cast<int>(points.size()), [&](int k) {
@@ -279,7 +282,7 @@ void measure_colour(ImageQuality& quality, const Setting& setting, const Outline
     const TrainScene scene = setting.instrument.scene();
     struct Colour {
         double focus;
-        double height; // of the edge's image
+        double height; // height of the edge's image on the detector, mm
     };
     const auto at_share = [&](double share) {
         const double spectral = physics::f64::draw_light(scene, setting.instrument.constants, share).spectral;
@@ -295,7 +298,7 @@ void measure_colour(ImageQuality& quality, const Setting& setting, const Outline
     quality.lateral_colour = (longer.height - shorter.height) / first_order.magnification;
 }
 
-// What clips the light, and pixels that do not go with the optics.
+// Warnings about lenses that clip the light, and pixels that do not suit the optics.
 std::vector<std::string> warnings_of(const ImageQuality& quality, const FirstOrder& first_order) {
     std::vector<std::string> warnings;
     if (const std::string lenses = list_of_lenses(quality.axis_clipping); !lenses.empty()) {
@@ -306,9 +309,9 @@ std::vector<std::string> warnings_of(const ImageQuality& quality, const FirstOrd
             warnings.push_back("The cone from the field's corner is clipped by " + lenses + ".");
         }
     }
-    // Where one pixel's blur, n e / NA, is above the depth of field n lambda / NA^2, the detector decides what is in
-    // focus: it is coarser than the optics. Sampling all that they resolve takes half an Airy radius, which focus
-    // variation can do without. Below a tenth of the radius pixels add noise and memory and no detail.
+    // Where one pixel's blur, n e / NA, exceeds the depth of field n lambda / NA^2, the detector, being coarser than
+    // the optics, determines the depth of field. Full sampling takes half an Airy radius, which focus variation can do
+    // without. Below a tenth of the radius pixels add noise and memory but no detail.
     constexpr double far_finer = 0.1;
     if (quality.detector_depth_of_field > first_order.depth_of_field) {
         const double wavelength = quality.wavelength_um * mm_per_um;
@@ -353,7 +356,7 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
     quality.axis = point_image(imaging, setting.on_axis, setting.height, setting.nodes);
     quality.axis.relative_light = 1;
     const glm::dvec2 axis_centroid = point_image(imaging, setting.on_axis, setting.height, setting.reference).centroid;
-    const double near_axis = 0.01 * first_order.field_edge; // distortion is 1e-4 of the edge's there
+    const double near_axis = 0.01 * first_order.field_edge; // the distortion here is 1e-4 of the edge's
     quality.magnification = real_magnification(setting, imaging, outline_at(imaging, {near_axis, 0}), axis_centroid);
 
     const glm::dvec2 far = first_order.field_corner;

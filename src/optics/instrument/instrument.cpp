@@ -20,8 +20,8 @@ using physics::f64::Surface;
 
 namespace {
 
-// "imaging 3 (10x_0.28 3, aperture stop)": the place in the train, and in the prescription as its file
-// counts.
+// Appends names such as "imaging 3 (10x_0.28 3, aperture stop)": the index in the train, and the number in the
+// prescription's file.
 void name_surfaces(std::vector<std::string>& names, const char* train, const PlacedSurfaces& surfaces) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         names.push_back(fmt::format("{} {} ({})", train, i + 1, surfaces[i].name.text()));
@@ -76,7 +76,7 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
     constants.detector_rows = pixels.rows;
     constants.gate_position = imaging.imaging.pupil_curvature;
     constants.gate_slope = 1;
-    // A little more than the field: aberrations let the detector see past its paraxial edge.
+    // The field is slightly enlarged: aberrations let the detector see past its paraxial edge.
     constants.gate_radius =
         std::max(hulls.gate_radius(), gate_radius(imaging.imaging, 1.05 * layout.field_half_diagonal,
                                                   hulls.heights().low, hulls.heights().high));
@@ -127,7 +127,7 @@ void check(const InstrumentDescription& description) {
     require_surfaces(description.tube_lens, "tube_lens.prescription");
 }
 
-// The instrument as the trace takes it; without its elements in the room and its turned form.
+// The instrument's trains and constants; its elements in the room and its reversed form are added later.
 Instrument reduce(const InstrumentDescription& description, const AxialLayout& layout, const ImagingTrain& imaging,
                   const MeasuredImaging& measured, const DetectorHulls& hulls, const Illumination& illumination) {
     Instrument instrument;
@@ -138,7 +138,7 @@ Instrument reduce(const InstrumentDescription& description, const AxialLayout& l
     instrument.spectral_bins = description.source.spectrum.value_or(description.spectrum).bins;
     instrument.constants = constants_of(description, layout, imaging, hulls, illumination);
     instrument.features = features_of(description, instrument.surfaces);
-    if ((instrument.features & physics::f64::FEATURE_LIGHT_FIELD) != 0) { // a ring light passes it by
+    if ((instrument.features & physics::f64::FEATURE_LIGHT_FIELD) != 0) { // light of a ring bypasses it
         instrument.light_field = description.light_field;
     }
     instrument.first_order = first_order_of(description, layout, measured, illumination);
@@ -260,7 +260,7 @@ Instrument assemble(const InstrumentDescription& description) {
     check(description);
     const AxialLayout layout = lay_out(description);
     const ImagingTrain imaging = place_imaging(description, layout);
-    // The two that take long, side by side. Only the first source may stand behind the illuminator.
+    // The two slow stages run in parallel. Only the first source may stand behind the illuminator.
     std::future<Illumination> illuminator;
     if (!description.source.ring) {
         illuminator = std::async(std::launch::async, [&] { return place_illuminator(description, layout, imaging); });
@@ -293,7 +293,7 @@ Instrument assemble(const InstrumentDescription& description) {
                    "Make the others ring lights.");
         }
         Instrument further = in_light_of(source);
-        further.elements = instrument.elements; // light of a ring may find its way to the illuminator too
+        further.elements = instrument.elements; // light of a ring may reach the illuminator too
         instrument.further_lights.push_back(std::move(further));
     }
     return instrument;

@@ -21,16 +21,15 @@ constexpr int most_degree = 7; // third- and fifth-order distortion, and one ord
 constexpr int nodes_a_side = 9;
 constexpr int wavelengths = 9;
 
-// From one side of an interval to the other, its ends included: Chebyshev's points, about which interpolating
-// polynomials do not swing.
+// Chebyshev's points of [-1, 1], both ends included, between which interpolating polynomials do not oscillate.
 double node_at(int k) {
     return -std::cos(pi * k / (nodes_a_side - 1));
 }
 
-// Of the light that reaches the middle of a pixel; NaN where none does.
+// The focus of the light that reaches the middle of a pixel; NaN if none does.
 PencilFocus pencil_of(const Imaging& imaging, double magnification, std::span<const SpectralNode> spectrum,
                       glm::dvec2 nominal) {
-    // Every azimuth of a symmetric train is alike, and the x axis needs half of the rays.
+    // All azimuths of a symmetric train are equivalent, and on the x axis half of the rays are enough.
     const double radius = glm::length(nominal);
     const glm::dvec2 along = imaging.symmetric && radius > 0 ? nominal / radius : glm::dvec2(1, 0);
     const glm::dvec2 seen = imaging.symmetric ? glm::dvec2(radius, 0) : nominal;
@@ -46,12 +45,12 @@ PencilFocus pencil_of(const Imaging& imaging, double magnification, std::span<co
     }
     glm::dvec2 middle = chief->object_point;
     if (imaging.symmetric) {
-        middle.y = 0; // but for rounding
+        middle.y = 0; // removes rounding
     }
     auto pencil = focus_of_pencil(imaging, magnification, outline_at(imaging, middle), view.detector, spectrum);
     const glm::dvec2 own = pencil.centroid;
     if (imaging.symmetric) {
-        pencil.centroid = own.x * along; // and own.y is rounding
+        pencil.centroid = own.x * along; // own.y is rounding
     }
     return pencil;
 }
@@ -64,7 +63,7 @@ struct Node {
 
 std::vector<Node> traced_nodes(const Imaging& imaging, double magnification, std::span<const SpectralNode> spectrum,
                                glm::dvec2 half_field) {
-    // A quarter of a symmetric train's field tells the others.
+    // For a symmetric train, a quarter of the field determines the others.
     const int first = imaging.symmetric ? nodes_a_side / 2 : 0;
     const int side = nodes_a_side - first;
     const auto pencils = parallel_list(side * side, [&](int k) {
@@ -89,7 +88,7 @@ std::vector<Node> traced_nodes(const Imaging& imaging, double magnification, std
     return nodes;
 }
 
-// The least-squares plane of the places over a regular grid of the field, and how far they are from it.
+// Fits an affine map to the places over a regular grid of the field; `residual` is the largest deviation.
 MappingDeviation deviation_of(const PixelMapping& mapping, glm::dvec2 half_field) {
     constexpr int half_points = 16;
     MappingDeviation deviation;
@@ -99,7 +98,7 @@ MappingDeviation deviation_of(const PixelMapping& mapping, glm::dvec2 half_field
             nominals.push_back(half_field * glm::dvec2(i, j) / static_cast<double>(half_points));
         }
     }
-    // About the middle of a regular grid shift and both rates are independent of each other.
+    // On a regular grid about the centre, the fits of the shift and of both rates are independent.
     glm::dmat2 rates(0);
     glm::dvec2 squares(0);
     glm::dvec2 shift(0);
@@ -139,12 +138,12 @@ PixelMapping::PixelMapping(const InstrumentDescription& description, const Instr
     scale_ = std::sqrt(2.0) * half_field;
     const auto nodes = traced_nodes(imaging, first_order.magnification, nodes_of_spectrum, half_field);
 
-    // Half as many terms as nodes leave the nodes able to tell how good the polynomials are.
+    // At most half as many terms as nodes, so that the nodes still reveal the polynomials' error.
     int degree = most_degree;
     while (degree >= 0 && 2 * PlanePolynomial::terms(degree) > nodes.size()) {
         --degree;
     }
-    if (degree < 0) { // light reaches hardly any pixel
+    if (degree < 0) { // hardly any pixel receives light
         deviation_.error = std::numeric_limits<double>::quiet_NaN();
         return;
     }
@@ -161,7 +160,7 @@ PixelMapping::PixelMapping(const InstrumentDescription& description, const Instr
     aside_y_ = fitted[1];
     focus_ = fitted[2];
     deviation_ = deviation_of(*this, half_field);
-    if (imaging.symmetric) { // by symmetry; the sums leave rounding
+    if (imaging.symmetric) { // zero by symmetry; the sums leave rounding
         deviation_.shift = glm::dvec2(0);
         deviation_.rotation = deviation_.perpendicularity = 0;
     }

@@ -14,7 +14,7 @@ namespace {
 using physics::f64::Surface;
 using Kind = Element::Kind;
 
-// Free radius (mm) of what no semi-diameter limits: wide of any beam in a microscope's infinity space.
+// Free radius (mm) of elements without a semi-diameter: wider than any beam in a microscope's infinity space.
 constexpr double unlimited_radius = 25;
 // A barrel is wider than its lenses by this share and this length (mm).
 constexpr double barrel_share = 1.05;
@@ -42,9 +42,9 @@ bool is_limited(const Surface& surface) {
     return (surface.flags & physics::f64::SURFACE_CLIPPED) != 0;
 }
 
-// Largest radius at which the surface may be asked for, mm.
+// The largest radius (mm) at which the surface is evaluated.
 double reach(const Surface& surface) {
-    // Short of the equator, where its slope is infinite.
+    // The limit stays inside the equator, where the slope is infinite.
     constexpr double short_of_equator = 0.98;
     const double root = std::sqrt(std::max(0.0, 1 + surface.conic)) * std::abs(surface.curvature);
     return root > 0 ? short_of_equator / root : std::numeric_limits<double>::infinity();
@@ -77,7 +77,7 @@ Room furnish(const Instrument& instrument) {
     Room room;
     const Pose& source = instrument.source_pose;
     room.source = {source.origin, source.axes[0], source.axes[1], source.axes[2]};
-    std::map<Part, double> widest; // free radius of each part
+    std::map<Part, double> widest; // largest free radius in each part
     for (const optics::Element& element : instrument.elements) {
         double& radius = widest[element.part];
         radius = std::max(radius, free_radius(element, instrument.constants));
@@ -95,7 +95,7 @@ Room furnish(const Instrument& instrument) {
         stand(element, placed.pose);
         const bool mounted = is_limited(placed.surface) || has_barrel(placed.part);
         element.outer_radius = mounted ? barrel_share * widest[placed.part] + barrel_gap : radius;
-        // Beyond the aperture that it was designed for, a polynomial may turn anywhere.
+        // Beyond its design aperture an aspheric polynomial may take any form.
         const bool aspheric = (placed.surface.flags & SURFACE_ASPHERIC) != 0;
         element.rim_radius = aspheric ? radius : std::min(element.outer_radius, reach(placed.surface));
         element.rim_height = asphere_sag(placed.surface, element.rim_radius * element.rim_radius).sag;
@@ -103,7 +103,7 @@ Room furnish(const Instrument& instrument) {
         room.elements.push_back(element);
         room.names.push_back(fmt::format("{}: {}", name_of(placed.part), placed.name.text()));
     }
-    // A barrel from each part's first vertex to its last.
+    // Each part with a barrel gets one from its first vertex to its last.
     for (std::size_t first = 0; first < instrument.elements.size();) {
         const optics::Element& start = instrument.elements[first];
         std::size_t last = first;
@@ -127,7 +127,7 @@ Room furnish(const Instrument& instrument) {
     for (const PlacedMesh& mesh : instrument.meshes) {
         room.add_mesh(mesh);
     }
-    std::map<std::string, int> meshes; // of one file
+    std::map<std::string, int> meshes; // number of meshes of each file
     for (std::size_t k = room.surfaces; k < room.names.size(); ++k) {
         if (const int number = ++meshes[room.names[k]]; number > 1) {
             room.names[k] += fmt::format(" ({})", number);
@@ -178,7 +178,7 @@ Room::Box Room::bounds(std::size_t index) const {
     double low = std::min(0.0, element.rim_height);
     double high = std::max({0.0, element.rim_height, element.barrel_length});
     if ((element.surface.flags & physics::f64::SURFACE_ASPHERIC) != 0) {
-        constexpr int samples = 64; // more than a polynomial of degree 16 can turn
+        constexpr int samples = 64; // more than a polynomial of degree 16 has extrema
         for (int i = 1; i < samples; ++i) {
             const double r = element.rim_radius * i / samples;
             const double sag = physics::f64::asphere_sag(element.surface, r * r).sag;

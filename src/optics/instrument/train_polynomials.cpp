@@ -35,23 +35,24 @@ namespace {
 constexpr double largest_place_error = 2e-4; // mm
 constexpr double largest_share_of_field = 2.5e-4;
 constexpr double largest_direction_error = 2e-5;
-// Of the square of an edge's radius. Light that is nearer than the error is traced, which costs a GPU the time of all
-// that is traced beside it.
+// Error bounds in units of the square of an edge's radius. Light nearer to an edge than the error is traced, and a GPU
+// then spends that time for all paths traced beside it.
 constexpr double wanted_edge_error = 1e-4;
 constexpr double largest_traced_share = 5e-3;
-// Of the same squares: what a float leaves open, and how near to other edges light may come that nobody asks about.
+// Margins in units of the square of an edge's radius: the rounding of a float, and the distance that light must keep
+// from edges without a polynomial.
 constexpr double float_margin = 4e-6;
 constexpr double clear_of_edge = 2e-3;
 
-// What the train makes of one ray. As everything is the same all round, the place at the source is on the x axis.
+// The path of one ray through the train. By symmetry its place at the source can be on the x axis.
 struct Sample {
-    glm::dvec3 invariants{0}; // u, v, w
-    glm::dvec2 place{0};      // at the source, 1: its radius
-    glm::dvec2 across{0};     // direction there from its middle, 1: the farthest
+    glm::dvec3 invariants{0}; // u, v, w of shaders/physics/train_polynomials.glsl
+    glm::dvec2 place{0};      // position at the source in units of its radius
+    glm::dvec2 across{0};     // direction at the source from its middle, in units of the aim's sine
     glm::dvec2 end{0};        // mm, on the plane
     glm::dvec2 direction{0};
-    std::vector<double> filled; // of each edge's radius the square that the ray is at; infinite without an edge before
-    int ended = -1;             // surface; -1: it passes
+    std::vector<double> filled; // squared height at each edge over its squared radius; infinite if not reached
+    int ended = -1;             // index of the surface that stops the ray; -1: it passes
 };
 
 class Train {
@@ -69,7 +70,7 @@ class Train {
     const Surface& surface(int k) const { return instrument_.surfaces[static_cast<std::size_t>(k)]; }
     bool has_edge(int k) const { return (surface(k).flags & physics::f64::SURFACE_CLIPPED) != 0; }
 
-    // u and w as above, turn: the angle between place and direction.
+    // Traces the ray of the invariants u and w; turn: the angle (rad) between place and direction.
     Sample sample(double u, double w, double turn) const {
         Sample result;
         result.place = {std::sqrt(u), 0};
@@ -104,8 +105,8 @@ class Train {
     double radius_;
 };
 
-// All over the light, each by itself: by the additive recurrence of the powers of the root of x^4 = x + 1. Every tenth
-// is on the rim of each way, where polynomials err most.
+// Samples spread over all the light, each computed from its index by the additive recurrence of powers of the root of
+// x^4 = x + 1. Every tenth is on the rim of each coordinate, where polynomials have their largest errors.
 std::vector<Sample> trials_of(const Train& train) {
     constexpr int trials = 1 << 15;
     constexpr double root = 1.2207440846057596;
@@ -127,8 +128,8 @@ double value_at(const Polynomial& polynomial, const Sample& sample) {
     return value_of(polynomial, sample.invariants.x, sample.invariants.y, sample.invariants.z);
 }
 
-// For each column of values, one a sample, the polynomial of the degree whose squared errors, weighted, have the least
-// sum.
+// For each column of values (one value a sample), the polynomial of that degree with the least weighted sum of squared
+// errors.
 std::vector<Polynomial> fit(int degree, const std::vector<Sample>& samples, const std::vector<double>& weights,
                             const std::vector<std::vector<double>>& values) {
     std::vector<int> places;
@@ -171,21 +172,20 @@ std::vector<Polynomial> fit(int degree, const std::vector<Sample>& samples, cons
     return result;
 }
 
-// Whether light that is no further than a little beyond the edges comes to a surface.
+// True if the ray reaches a surface, where edges before are enlarged a little.
 bool comes_to(const Sample& sample, int surface) {
     constexpr double a_little = 1.002;
     return std::all_of(sample.filled.begin(), sample.filled.begin() + surface,
                        [](double filled) { return filled < a_little; });
 }
 
-// Of the light that comes to a surface, at the nodes of Chebyshev's polynomials, between which what is fitted errs
-// least.
+// Samples that reach a surface, at Chebyshev nodes, where a polynomial fit has the least error in between.
 std::vector<Sample> nodes_coming_to(const Train& train, int surface, const std::vector<Sample>& trials) {
     glm::dvec3 widest(0);
     for (const Sample& trial : trials) {
         widest = comes_to(trial, surface) ? glm::max(widest, trial.invariants) : widest;
     }
-    constexpr int nodes = 14; // each way
+    constexpr int nodes = 14; // in each coordinate
     constexpr int sheet = nodes * nodes;
     const auto node = [](int k) { return 0.5 - 0.5 * std::cos(std::numbers::pi * (k + 0.5) / nodes); };
     std::vector<Sample> samples = parallel_list(nodes * sheet, [&](int k) {
@@ -196,8 +196,8 @@ std::vector<Sample> nodes_coming_to(const Train& train, int surface, const std::
     return samples;
 }
 
-// The surfaces whose edges stop most of the light, in their order. To ask after an edge takes a GPU as long as to trace
-// what a rare one stops.
+// The surfaces whose edges stop most of the light, in ascending order. Edges that stop little are left out: testing one
+// costs a GPU as much as tracing its light.
 std::vector<int> stopping_edges(const Train& train, const std::vector<Sample>& trials) {
     const auto rare = static_cast<int>(1.5e-3 * static_cast<double>(trials.size()));
     std::vector<int> stopped(static_cast<std::size_t>(train.surfaces()));
@@ -218,7 +218,7 @@ std::vector<int> stopping_edges(const Train& train, const std::vector<Sample>& t
     return edges;
 }
 
-// mm^2, of light on its way to the edge and not far from its rim.
+// The largest error (mm^2) of the polynomial among samples that reach the edge near its rim.
 double error_at_edge(const Polynomial& polynomial, const Surface& edge, int surface,
                      const std::vector<Sample>& samples) {
     double largest = 0;
@@ -251,7 +251,7 @@ EdgePolynomial fit_edge(const Train& train, int surface, const std::vector<Sampl
             break;
         }
     }
-    // What is counted from the middle has the rounding of the whole direction.
+    // Offsets from the middle carry the rounding of the whole direction.
     const double whole = 1 + std::abs(train.shift()) * train.radius() / train.sine();
     const double margin = 2 * error + float_margin * whole * edge.semi_diameter_squared;
     result.inside_below = edge.semi_diameter_squared - margin;
@@ -260,18 +260,18 @@ EdgePolynomial fit_edge(const Train& train, int surface, const std::vector<Sampl
     return result;
 }
 
-// The factors of the place and of the direction at the source in a sum.
+// The factors of place and direction at the source in the sum that gives an end position or direction.
 using Factors = std::array<Polynomial, 2>;
 
 glm::dvec2 sum_at(const Factors& factors, const Sample& sample) {
     return sample.place * value_at(factors[0], sample) + sample.across * value_at(factors[1], sample);
 }
 
-// Factors of the least degree whose sum is off by no more than allowed on all that passed; of the highest else. And the
-// largest error.
+// Factors of the least degree whose sum has an error within `allowed` on all passing samples, else of the highest
+// degree, and the largest error.
 std::pair<Factors, double> fit_factors(const std::vector<Sample>& passing, const std::vector<Sample>& passed,
                                        glm::dvec2 (*value)(const Sample&), double allowed) {
-    // With the place along x: y is the direction's factor alone.
+    // The place lies along x, so the y component determines the direction's factor alone.
     std::vector<double> of_place, of_direction, by_place, by_direction;
     for (std::vector<double>* column : {&of_place, &of_direction, &by_place, &by_direction}) {
         column->reserve(passing.size());
@@ -292,7 +292,7 @@ std::pair<Factors, double> fit_factors(const std::vector<Sample>& passing, const
         for (const Sample& sample : passed) {
             error = std::max(error, glm::length(sum_at(factors, sample) - value(sample)));
             if (error > 10 * allowed) {
-                break; // far from good
+                break; // hopeless at this degree
             }
         }
     }
@@ -303,7 +303,7 @@ PolynomialPassage told_of(const TrainPolynomials& polynomials, const Sample& sam
     return meet_edges(polynomials, sample.invariants.x, sample.invariants.y, sample.invariants.z);
 }
 
-// Whether light ends as it is told, and that nearer to no edge that nobody asks about than samples can tell.
+// True if the polynomials predict the traced end and no untested edge is close.
 bool is_true(const Train& train, const TrainPolynomials& polynomials, const PolynomialPassage& told,
              const Sample& sample) {
     const int end = told.surface < 0 ? train.surfaces() : told.surface;
@@ -317,7 +317,7 @@ bool is_true(const Train& train, const TrainPolynomials& polynomials, const Poly
     return told.surface == sample.ended;
 }
 
-// Takes from what the polynomials tell what is not true of a sample, with what is further out.
+// Shrinks the valid region to exclude a mispredicted sample.
 void withhold(const Train& train, TrainPolynomials& polynomials, const Sample& sample) {
     const PolynomialPassage told = told_of(polynomials, sample);
     if (!told.known || is_true(train, polynomials, told, sample)) {
@@ -334,7 +334,7 @@ void withhold(const Train& train, TrainPolynomials& polynomials, const Sample& s
         }
     }
     if (nearest == nullptr) {
-        return; // it stays untrue, and shows in the end
+        return; // the misprediction remains; fit_illumination() then returns none
     }
     double& bound = told.surface < 0 ? nearest->inside_below : nearest->ends_below;
     bound = (fullest - clear_of_edge) * train.surface(nearest->surface).semi_diameter_squared;

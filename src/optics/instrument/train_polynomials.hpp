@@ -10,17 +10,17 @@ namespace vkfv::optics {
 
 struct FittedTrain {
     physics::f64::TrainPolynomials polynomials{};
-    // The largest errors among sampled rays that pass: of the place in the plane of best focus, mm, and of the
-    // direction's part across the axis.
+    // The largest errors among sampled rays that pass: of the position in the plane of best focus (mm), and of the
+    // direction's transverse part.
     double place_error = 0;
     double direction_error = 0;
-    double traced_share = 0; // of sampled rays, those too near to an edge for the polynomials to tell
+    double traced_share = 0; // share of sampled rays too near to an edge for the polynomials
 };
 
-// Of the illumination of an instrument: polynomials of the least degrees that are off by no more than a fifth of a
-// micrometre and a 4000th of the lit circle's radius, and by 2e-5 in direction. None where that takes a higher
-// degree than there is, where too much light passes near edges, and where the light depends on more than its ray
-// (parts displaced, several wavelengths, losses, a field of light) or comes from a ring.
+// Fits the illumination of an instrument: polynomials of the least degrees whose errors are within a fifth of a
+// micrometre and a 4000th of the lit circle's radius, and within 2e-5 in direction. None if that takes a degree above
+// the highest, if too much light passes near edges, or if the light depends on more than its ray (displaced parts,
+// several wavelengths, losses, a light field) or comes from a ring.
 std::optional<FittedTrain> fit_illumination(const Instrument& instrument);
 
 } // namespace vkfv::optics

@@ -9,8 +9,8 @@ namespace vkfv::optics {
 
 namespace {
 
-// An error of this size, through 10 mm of glass, changes the path between the axis and the rim of a cone of aperture
-// 0.3 by 1e-5 * 10 mm * 0.3^2 / 2 = 5 nm.
+// The index uncertainty below which no warning is given: through 10 mm of glass, it changes the path between the axis
+// and the rim of a cone of aperture 0.3 by 1e-5 * 10 mm * 0.3^2 / 2 = 5 nm.
 constexpr double negligible = 1e-5;
 
 std::vector<const Medium*> media_of(const InstrumentDescription& description) {

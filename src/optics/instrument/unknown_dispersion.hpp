@@ -1,4 +1,4 @@
-// Glasses whose dispersion the instrument's own prescriptions do not tell.
+// Warns of glasses whose dispersion the instrument's own prescriptions do not state.
 #pragma once
 
 #include "optics/instrument/instrument.hpp"
@@ -9,7 +9,8 @@
 namespace vkfv::optics {
 
 // Returns a sentence for the user if the light of the description reaches wavelengths at which indices of its glasses
-// are estimated (Medium::dispersion_uncertainty); none else. Throws InputError for a wavelength out of a glass's range.
+// are estimated (Medium::dispersion_uncertainty); an empty list otherwise. Throws InputError for a wavelength out of a
+// glass's range.
 std::vector<std::string> warning_of_unknown_dispersion(const InstrumentDescription& description);
 
 } // namespace vkfv::optics

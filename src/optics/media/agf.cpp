@@ -23,7 +23,7 @@ namespace vkfv::optics {
 namespace {
 
 constexpr std::array<std::string_view, 8> skipped_keywords = {"CC", "GC", "ED", "TD", "OD", "IT", "MD", "BD"};
-constexpr std::size_t longest_quotation = 60; // characters of a line that a message repeats
+constexpr std::size_t longest_quotation = 60; // characters of a line that a message quotes
 
 bool is_space(char character) {
     return character == ' ' || character == '\t' || character == '\v' || character == '\f';
@@ -46,7 +46,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 std::string quotation(std::string_view text) {
-    // Cut where a character begins.
+    // The cut falls on the start of a UTF-8 character, so that a message stays valid text.
     std::size_t length = std::min(text.size(), longest_quotation);
     while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) {
         --length;
@@ -54,7 +54,7 @@ std::string quotation(std::string_view text) {
     return fmt::format("\"{}{}\"", text.substr(0, length), length < text.size() ? "..." : "");
 }
 
-// A line, or several where its numbers go on in the next ones.
+// A logical line of the catalogue: its numbers may continue on the next physical lines.
 struct Word {
     std::string_view text;
     int line = 0;
@@ -62,7 +62,7 @@ struct Word {
 
 bool is_number(std::string_view word) {
     double value = 0;
-    if (word.starts_with('+')) { // from_chars takes none
+    if (word.starts_with('+')) { // from_chars accepts no plus sign
         word.remove_prefix(1);
     }
     return std::from_chars(word.data(), word.data() + word.size(), value).ptr == word.data() + word.size() &&
@@ -79,7 +79,8 @@ class Reader {
         if (words.empty() || words[0][0] == '!' || words[0][0] == '#') {
             return;
         }
-        // Some vendors' lines are wrapped: every line begins with letters, so one of numbers goes on with the last.
+        // Some vendors' catalogues are wrapped: every logical line begins with letters, so a line that begins with a
+        // number continues the one before it.
         if (pending_.empty() || !is_number(words[0])) {
             take_pending();
         }
@@ -98,7 +99,7 @@ class Reader {
                               .expected = "a glass catalogue in the AGF format",
                               .remedy = "Check that the file is a glass catalogue and complete."});
         }
-        if (glasses_.media.empty()) { // none can be used
+        if (glasses_.media.empty()) { // no glass of the file is usable
             std::vector<InputProblem> problems;
             for (const auto& [name, problem] : glasses_.unusable) {
                 problems.push_back(problem);
@@ -113,15 +114,15 @@ class Reader {
   private:
     struct Glass {
         std::string name;
-        int line = 0; // of its NM
+        int line = 0; // number of the glass's NM line
         DispersionFormula formula{};
         std::vector<double> coefficients;
         bool has_coefficients = false;
         double minimum_um = 0;
-        double maximum_um = 0; // 0: no LD yet
+        double maximum_um = 0; // 0 before an LD line is read
     };
 
-    // A fault in a record makes its own glass unusable, and no other.
+    // A fault in a record makes only its own glass unusable.
     void take_pending() {
         if (pending_.empty()) {
             return;
@@ -203,12 +204,12 @@ class Reader {
 
     double number(std::string_view keyword, const Word& word) const {
         std::string_view digits = word.text;
-        if (digits.starts_with('+')) { // from_chars takes none
+        if (digits.starts_with('+')) { // from_chars accepts no plus sign
             digits.remove_prefix(1);
         }
         double value = 0;
         const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-        // Out of range: from_chars leaves the value, whether it is too large or too small.
+        // from_chars leaves the value unchanged when it is out of range, too large and too small alike.
         if (code != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) {
             fail(word, keyword, word.text, "a finite number", "Correct this number.");
         }
@@ -287,7 +288,7 @@ class Reader {
         glass_.reset();
     }
 
-    // Vendors' catalogues have names twice. The first stays: a search from the front finds it.
+    // Vendors' catalogues contain some names twice. The first glass stays, because a search from the front finds it.
     void add(Medium medium, int line) {
         const auto [known, is_new] = index_of_.try_emplace(medium.name, glasses_.media.size());
         if (is_new) {
@@ -320,11 +321,11 @@ class Reader {
 
     const std::filesystem::path& file_;
     int line_ = 0;
-    bool skipping_ = false;     // the rest of a record that is left out
-    std::vector<Word> pending_; // the last line, which may go on
+    bool skipping_ = false;     // true while the rest of an unusable record is skipped
+    std::vector<Word> pending_; // words of the last logical line, which the next physical line may continue
     std::optional<Glass> glass_;
-    std::map<std::string, std::size_t, std::less<>> index_of_; // of each name in glasses_.media
-    std::vector<int> lines_;                                   // of each medium's NM
+    std::map<std::string, std::size_t, std::less<>> index_of_; // index into glasses_.media by name
+    std::vector<int> lines_;                                   // number of the NM line of each medium
     std::vector<std::string> twins_;
     AgfGlasses glasses_;
 };

@@ -18,7 +18,7 @@ namespace vkfv::optics {
 
 namespace {
 
-constexpr const char* own_glasses = "common"; // of the assets' folder
+constexpr const char* own_glasses = "common"; // catalogue that comes with the program, in the assets' folder
 constexpr const char* glasses_folder = "glasses";
 
 std::string in_one_case(std::string_view name) {
@@ -33,7 +33,8 @@ std::string in_one_case(std::string_view name) {
     return text;
 }
 
-// Both media's largest difference of index over the wavelengths, where both are valid; infinite if they never are.
+// The largest difference of index between two media over the wavelengths where both are valid; infinite if there are
+// none.
 double difference_of(const Medium& a, const Medium& b, const Medium::Range& used) {
     if (a.dispersion == b.dispersion) {
         return 0;
@@ -44,7 +45,7 @@ double difference_of(const Medium& a, const Medium& b, const Medium::Range& used
         const double wavelength = used.minimum_um + (used.maximum_um - used.minimum_um) * i / (wavelengths - 1);
         try {
             largest = std::max(largest, std::abs(a.index(wavelength) - b.index(wavelength)));
-        } catch (const InputError&) { // out of the range of one of them
+        } catch (const InputError&) { // the wavelength is outside the range of one medium
         }
     }
     return largest < 0 ? INFINITY : largest;
@@ -72,7 +73,7 @@ GlassCatalog GlassCatalog::builtin() {
 
 GlassCatalog GlassCatalog::of(const TomlTable& root) {
     GlassCatalog catalog;
-    root.collect_problems(); // to tell of all at once
+    root.collect_problems(); // one error reports all problems
     root.optional_string("title");
     root.attempt("media", [&] {
         const auto tables = root.table("media");
@@ -143,7 +144,7 @@ std::optional<Medium> GlassCatalog::find(std::string_view name, const GlassSearc
         const Catalogue* catalogue;
         const Medium* medium;
     };
-    // The glass that the catalogues which `asked` chooses have in common.
+    // The glass on which all catalogues that satisfy `asked` agree; none if no such catalogue has it.
     const auto common = [&](auto asked) -> std::optional<Medium> {
         std::vector<Found> found;
         for (const Catalogue& catalogue : added_) {

@@ -18,7 +18,7 @@ const std::array<std::string_view, 13> dispersion_formula_names = {
 namespace {
 
 constexpr std::array<std::size_t, 13> coefficient_counts = {6, 6, 6, 5, 3, 8, 4, 4, 5, 8, 10, 8, 9};
-constexpr double table_tolerance_um = 0.01; // beyond the tabulated range
+constexpr double table_tolerance_um = 0.01; // extension of the tabulated range at either end
 constexpr Medium::Range model_range = {.minimum_um = 0.36, .maximum_um = 1.1};
 constexpr Medium::Range three_lines_range = {.minimum_um = 0.37, .maximum_um = 0.72};
 
@@ -27,11 +27,11 @@ struct Overloaded : Functions... {
     using Functions::operator()...;
 };
 template <class... Functions>
-Overloaded(Functions...) -> Overloaded<Functions...>; // clang deduces no aggregates before 17
+Overloaded(Functions...) -> Overloaded<Functions...>; // clang deduces no aggregates before version 17
 
-// The Fraunhofer lines F, d and C in um, and how far a table may round them.
+// Wavelengths of the Fraunhofer lines F, d and C (um), by which a table of these lines alone is recognized.
 constexpr std::array three_lines_um = {0.4861327, 0.5875618, 0.6562725};
-constexpr double line_rounding_um = 5e-4; // of 0.486, 0.588 and 0.656
+constexpr double line_rounding_um = 5e-4; // tolerance for tables that round to 0.486, 0.588 and 0.656
 
 bool is_of_three_lines(const IndexTable& table) {
     return std::ranges::equal(table.wavelengths_um, three_lines_um,
@@ -45,8 +45,8 @@ bool is_of_three_lines(const IndexTable& table) {
 // and nothing between F and C. tools/studies/glass_dispersion fitted the constants by least squares to the indices of
 // 735 glasses of SCHOTT, Ohara and CDGM at 0.39 to 0.48 um and at 0.665 to 0.72 um.
 struct UnknownDispersion {
-    double index = 0;       // that is to be added
-    double uncertainty = 0; // in which 95 in 100 of those glasses lie
+    double index = 0;       // correction added to the index
+    double uncertainty = 0; // half width that holds for 95 of 100 of these glasses
 };
 
 UnknownDispersion beyond_three_lines(const IndexTable& table, double wavelength_um) {
@@ -68,15 +68,14 @@ UnknownDispersion beyond_three_lines(const IndexTable& table, double wavelength_
 
 double index_of(const IndexTable& table, double wavelength_um) {
     const auto& [wavelengths_um, indices] = table;
-    // The three nearest of an ascending table are neighbours.
+    // The three tabulated wavelengths nearest to a given one are neighbours, as the table ascends.
     const std::size_t count = std::min<std::size_t>(3, wavelengths_um.size());
     std::size_t first = 0;
     while (first + count < wavelengths_um.size() &&
            wavelength_um - wavelengths_um[first] > wavelengths_um[first + count] - wavelength_um) {
         ++first;
     }
-    // Cauchy's formula is the polynomial in 1 / lambda^2 through the points; in Lagrange's form it is exact
-    // there.
+    // Cauchy's formula is the polynomial in 1 / lambda^2 through the points; Lagrange's form reproduces them exactly.
     const auto abscissa = [&](std::size_t i) { return 1 / (table.wavelengths_um[i] * table.wavelengths_um[i]); };
     const double x = 1 / (wavelength_um * wavelength_um);
     double sum = 0;
@@ -93,7 +92,8 @@ double index_of(const IndexTable& table, double wavelength_um) {
 }
 
 double index_of(const ModelGlass& model, double wavelength_um) {
-    // Per unit of (nd - 1) / vd; the part that is the same for all glasses, and the part linear in vd.
+    // Conrady's formula per unit of (nd - 1) / vd: `shape` is its part common to all glasses plus the part linear in
+    // vd.
     const auto conrady = [&](double c0, double c1, double c2) {
         return c0 + c1 / wavelength_um + c2 / std::pow(wavelength_um, 3.5);
     };
@@ -112,7 +112,7 @@ double index_of(const GlassFormula& glass, double wavelength_um) {
         }
         return std::sqrt(sum);
     };
-    // c(first) x^-2 + c(first + 1) x^-4 + ...
+    // The sum c(first) x^-2 + c(first + 1) x^-4 + ... of the formulas in even inverse powers.
     const auto inverse_powers = [&](std::size_t first, std::size_t last) {
         double sum = 0;
         for (std::size_t i = last + 1; i-- > first;) {
@@ -150,7 +150,7 @@ double index_of(const GlassFormula& glass, double wavelength_um) {
     case DispersionFormula::extended_3:
         return std::sqrt(c[0] + x2 * (c[1] + x2 * c[2]) + inverse_powers(3, 8));
     }
-    return std::nan(""); // not reached: all formulas are above
+    return std::nan(""); // unreachable: the switch handles all formulas
 }
 
 } // namespace

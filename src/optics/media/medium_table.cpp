@@ -29,7 +29,7 @@ Medium read_table_medium(const TomlTable& table, const std::string& name, const 
 Medium read_formula_medium(const TomlTable& table, const std::string& name, const std::string& source) {
     const std::vector<std::string> names(dispersion_formula_names.begin(), dispersion_formula_names.end());
     const std::string chosen = table.choice("formula", names);
-    table.require("formula"); // it decides on the coefficients
+    table.require("formula"); // the formula decides which coefficients follow
     const auto formula =
         static_cast<DispersionFormula>(1 + std::distance(names.begin(), std::find(names.begin(), names.end(), chosen)));
     auto coefficients = table.numbers("coefficients");
@@ -48,7 +48,7 @@ Medium read_formula_medium(const TomlTable& table, const std::string& name, cons
 
 Medium read_medium(const TomlTable& table, const std::string& name, const std::string& default_source) {
     const auto source = table.optional_string("source").value_or(default_source);
-    std::string form; // the key that tells it
+    std::string form; // the key that selects this form
     for (const std::string key : {"wavelengths_um", "nd", "index", "formula"}) {
         if (table.has(key) && !std::exchange(form, key).empty()) {
             table.fail(key, "one description of the medium", "Keep one of wavelengths_um, nd, index and formula.");

@@ -9,10 +9,11 @@
 namespace vkfv::optics {
 
 inline constexpr NumberRange index_range = {.minimum = 1, .maximum = 5};
-inline constexpr NumberRange abbe_range = {.minimum = 5, .maximum = 150}; // wide of every glass
+inline constexpr NumberRange abbe_range = {.minimum = 5, .maximum = 150}; // wider than the range of real glasses
 
-// One of: wavelengths_um and indices; nd and vd; index; formula, coefficients and range_um. `default_source` is that of
-// a table without `source`. Throws InputError, unless the document collects problems.
+// Reads the medium of a table, which has one of these forms: wavelengths_um and indices; nd and vd; index; formula,
+// coefficients and range_um. `default_source` serves a table without `source`. Throws InputError, unless the document
+// collects problems.
 Medium read_medium(const TomlTable& table, const std::string& name, const std::string& default_source);
 
 } // namespace vkfv::optics

@@ -15,7 +15,7 @@ namespace {
 
 using physics::f64::SpectralBin;
 
-constexpr int gaussian_bins = 128; // a linear density in 1/16 standard deviation is right to 5e-4
+constexpr int gaussian_bins = 128; // a linear density over 1/16 standard deviation is accurate to 5e-4
 // Standard deviation of a Gaussian over its full width at half maximum: 1 / (2 sqrt(2 ln 2)).
 constexpr double sigma_per_full_width = 0.42466090014400953;
 
@@ -46,7 +46,7 @@ void require_ascending(const std::vector<double>& wavelengths, const std::vector
     }
 }
 
-// Shares to cumulative shares; the last is 1 whatever the rounding.
+// Turns the bins' shares into cumulative shares; the last is set to 1, which rounding would miss.
 Spectrum finish(std::vector<SpectralBin> bins, double mean_times_total, double total) {
     if (!(total > 0)) {
         refuse("no flux", "a spectrum with some flux");
@@ -92,7 +92,7 @@ Spectrum Spectrum::lines(const std::vector<double>& wavelengths_um, const std::v
     }
     Spectrum spectrum = finish(std::move(bins), moment, total);
     if (spectrum.monochromatic()) {
-        spectrum.reference_um = spectrum.shortest_um; // free of the mean's rounding
+        spectrum.reference_um = spectrum.shortest_um; // exact, where the mean would be rounded
     }
     return spectrum;
 }
@@ -185,13 +185,14 @@ SpectralIndex spectral_index(const Medium& medium, const Spectrum& spectrum) {
     };
     const double low = x_of(spectrum.longest_um);
     const double high = x_of(spectrum.shortest_um);
-    // (n(x) - n(0)) / x is a polynomial through Chebyshev's nodes, by Newton's divided differences.
+    // The quotient (n(x) - n(0)) / x is interpolated by a polynomial at Chebyshev's nodes, in Newton's divided
+    // differences.
     std::array<double, terms> nodes{};
     std::array<double, terms> differences{};
     for (int k = 0; k < terms; ++k) {
         double x = 0.5 * (low + high) + 0.5 * (high - low) * std::cos(pi * (k + 0.5) / terms);
         if (std::abs(x) < 1e-3 * (high - low)) {
-            x = 1e-3 * (high - low); // the quotient needs a difference
+            x = 1e-3 * (high - low); // a node at 0 would divide by zero
         }
         nodes[k] = x;
         const double wavelength = 1 / std::sqrt(spectrum.centre() + x * spectrum.half_width());
@@ -202,7 +203,7 @@ SpectralIndex spectral_index(const Medium& medium, const Spectrum& spectrum) {
             differences[k] = (differences[k] - differences[k - 1]) / (nodes[k] - nodes[k - order]);
         }
     }
-    // From Newton's form to powers of x.
+    // The polynomial is converted from Newton's form to powers of x.
     std::array<double, terms> powers{};
     for (int k = terms - 1; k >= 0; --k) {
         for (int j = terms - 1; j > 0; --j) {

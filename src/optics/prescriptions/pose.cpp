@@ -6,7 +6,7 @@ namespace vkfv::optics {
 
 namespace {
 
-// Right-handed turn about one coordinate axis; columns are the new axes.
+// The right-handed rotation by an angle (rad) about one coordinate axis; its columns are the new axes.
 glm::dmat3 turn(int axis, double angle) {
     const int next = (axis + 1) % 3;
     const int third = (axis + 2) % 3;

@@ -1,4 +1,4 @@
-// Where an element stands: a frame with its origin (mm) and axes, in the frame that contains it.
+// The position and orientation of an element: a frame with its origin (mm) and axes, in the frame that contains it.
 #pragma once
 
 #include "optics/prescriptions/prescription.hpp"
@@ -17,15 +17,15 @@ struct Pose {
     glm::dvec3 direction(const glm::dvec3& inside) const { return axes * inside; }
 
     Pose along_z(double distance) const { return {point({0, 0, distance}), axes}; }
-    // Decentred and tilted about the own origin; without the thickness.
+    // The frame decentred and tilted about its own origin; the thickness of the break is not applied.
     Pose turned(const CoordinateBreak& change) const;
     Pose after(const CoordinateBreak& change) const { return turned(change).along_z(change.thickness); }
-    Pose along(const std::vector<CoordinateBreak>& changes) const; // after each of them, in their order
-    // For light the other way: half a turn about the own x axis.
+    Pose along(const std::vector<CoordinateBreak>& changes) const; // the frame after all breaks in order
+    // The frame for light of opposite direction: turned by half a turn about its own x axis.
     Pose half_turn() const { return {origin, glm::dmat3(axes[0], -axes[1], -axes[2])}; }
-    // This one as it is seen in a mirror that stands in another's plane z = 0.
+    // The mirror image of this frame in a mirror at z = 0 of the frame `mirror`.
     Pose mirrored_in(const Pose& mirror) const;
-    // `inside`, given in this frame, in the frame that this one is given in.
+    // Transforms a pose from this frame into the frame that contains it.
     Pose place(const Pose& inside) const { return {point(inside.origin), axes * inside.axes}; }
 };
 

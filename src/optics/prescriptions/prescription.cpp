@@ -32,12 +32,12 @@ const char* name_of(SurfaceRole role) {
 
 namespace {
 
-// Of any length; wide of every microscope, and far from where squares overflow.
+// Lengths in mm: wider than any microscope, and far from values whose squares overflow.
 constexpr NumberRange length_range = {.minimum = 0, .maximum = 1e6};
 constexpr NumberRange offset_range = {.minimum = -length_range.maximum, .maximum = length_range.maximum};
 constexpr NumberRange tilt_range_deg = {.minimum = -360, .maximum = 360};
 
-// The media of one prescription: its own, and those of catalogues.
+// The media that a prescription may name: its own, then those of catalogues.
 struct Media {
     std::map<std::string, Medium> own;
     const GlassCatalog& glasses;
@@ -55,7 +55,7 @@ Medium medium_named(const Media& media, const TomlTable& table, std::string_view
         if (auto found = media.glasses.find(*name)) {
             return std::move(*found);
         }
-    } catch (const InputError& error) { // the catalogues do not agree, or the record is wrong
+    } catch (const InputError& error) { // catalogues disagree or the record is faulty
         table.note(key, error.problem().expected, error.problem().remedy);
         return Medium::air();
     }
@@ -63,7 +63,7 @@ Medium medium_named(const Media& media, const TomlTable& table, std::string_view
     for (const auto& [known, medium] : media.own) {
         names.push_back(known);
     }
-    const auto meant = nearest_word(*name, names); // of the file's own
+    const auto meant = nearest_word(*name, names); // names of the file's own media
     table.fail(key, fmt::format("a medium (one of {}, or a glass of a catalogue)", fmt::join(names, ", ")),
                (meant ? fmt::format("Did you mean \"{}\"? ", *meant) : "") + remedy_for_unknown_glass(*name));
     return Medium::air();
@@ -149,7 +149,7 @@ Prescription read_prescription(const TomlTable& root, const std::filesystem::pat
     Prescription prescription;
     prescription.file = file;
     prescription.name = file.stem().string();
-    root.collect_problems(); // to tell of all at once
+    root.collect_problems(); // one error reports all problems
     prescription.title = root.optional_string("title").value_or(prescription.name);
     prescription.source = root.string("source");
     prescription.licence = root.string("licence");
@@ -158,7 +158,7 @@ Prescription read_prescription(const TomlTable& root, const std::filesystem::pat
     Media media{.own = {}, .glasses = glasses};
     if (const auto tables = root.optional_table("media")) {
         for (const auto& key : tables->keys()) {
-            media.own[key] = Medium::air(); // of that name, whatever comes of it
+            media.own[key] = Medium::air(); // a medium of that name must exist even if its table is faulty
             tables->attempt(key, [&] { media.own[key] = read_medium(tables->table(key), key, prescription.source); });
         }
     }

@@ -15,11 +15,11 @@ namespace vkfv::optics {
 
 namespace {
 
-// The shortest decimal near `guess` that `reads_back` accepts; without one, the shortest that reads back to
-// the guess.
+// The shortest decimal near `guess` that satisfies `reads_back`; if there is none, the shortest that reads back as
+// `guess`.
 template <class Predicate>
 std::string shortest(double guess, Predicate reads_back) {
-    constexpr int most_digits = 17; // tell all doubles apart
+    constexpr int most_digits = 17; // digits that distinguish all doubles
     for (int digits = 1; digits <= most_digits; ++digits) {
         const double candidate = std::strtod(fmt::format("{:.{}g}", guess, digits).c_str(), nullptr);
         if (reads_back(candidate)) {
@@ -72,7 +72,7 @@ std::string reciprocal_text(double value) {
     return shortest(1 / value, [&](double candidate) { return 1 / candidate == value; });
 }
 
-// The radius if its reciprocal is the curvature to the last bit.
+// The radius as text if its reciprocal is the curvature to the last bit, else the curvature.
 std::string curvature_text(double curvature) {
     const std::string radius = reciprocal_text(curvature);
     return is_reciprocal(radius, curvature) ? fmt::format("radius_mm = {}\n", radius)
@@ -151,7 +151,7 @@ std::string prescription_text(const Prescription& prescription) {
         text += fmt::format("source_distance_mm = {}\n", *prescription.source_distance);
     }
     const auto glasses = GlassCatalog::builtin();
-    std::vector<Medium> own; // that the built-in catalogue does not give
+    std::vector<Medium> own; // media that the built-in catalogue lacks
     const auto use = [&](const Medium& medium) {
         const auto is_same = [&](const Medium& other) { return other.name == medium.name; };
         const auto known = glasses.find(medium.name);

@@ -1,4 +1,4 @@
-// Prescriptions as TOML, the way assets/ holds them.
+// Writes prescriptions as TOML, in the layout of assets/.
 #pragma once
 
 #include "optics/prescriptions/prescription.hpp"
@@ -7,8 +7,8 @@
 
 namespace vkfv::optics {
 
-// Text that load_prescription reads back to the same bits; but zeros lose their sign, and what Prescription
-// does not hold, such as comments, is not there. Numbers are the shortest that do.
+// TOML text that load_prescription() reads back to the same bits, in the shortest decimals that do so. Zeros lose their
+// sign, and content that Prescription does not hold, such as comments, is lost.
 std::string prescription_text(const Prescription& prescription);
 
 } // namespace vkfv::optics

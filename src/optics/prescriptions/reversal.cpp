@@ -6,8 +6,8 @@ namespace vkfv::optics {
 
 namespace {
 
-// The inverse of a break, in a frame turned by 180 degrees about y, where x and z change their signs. The inverse has
-// the break's parts in the opposite order, the thickness first, which is a break of its own.
+// The inverse of a break, in a frame rotated by 180 degrees about y, which changes the signs of x and z. The inverse
+// has the break's parts in the opposite order, so the thickness comes first, as a break of its own.
 std::vector<CoordinateBreak> turned_round(const CoordinateBreak& change) {
     std::vector<CoordinateBreak> result;
     if (change.thickness != 0) {
@@ -32,7 +32,7 @@ Prescription turned_round(const Prescription& prescription) {
     const auto& surfaces = prescription.surfaces;
     for (std::size_t i = surfaces.size(); i-- > 0;) {
         PrescribedSurface surface = surfaces[i];
-        surface.curvature = -surface.curvature + 0.0; // no negative zeros
+        surface.curvature = -surface.curvature + 0.0; // + 0.0 avoids a negative zero
         for (double& coefficient : surface.aspheric) {
             coefficient = -coefficient + 0.0;
         }
@@ -40,7 +40,7 @@ Prescription turned_round(const Prescription& prescription) {
         surface.thickness = i > 0 ? surfaces[i - 1].thickness : 0;
         surface.breaks.clear();
         if (i + 1 < surfaces.size() && !surfaces[i + 1].breaks.empty()) {
-            // The way to this vertex was thickness, then breaks: now the thickness comes last.
+            // The path to this vertex was thickness, then breaks; in the reversed lens the thickness comes last.
             PrescribedSurface& before = result.surfaces.back();
             const auto& breaks = surfaces[i + 1].breaks;
             for (auto change = breaks.rbegin(); change != breaks.rend(); ++change) {

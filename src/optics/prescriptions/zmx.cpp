@@ -19,12 +19,12 @@ namespace {
 
 using namespace zmx;
 
-// As prescriptions are read.
+// Thicknesses (mm) have the same range as in prescriptions.
 constexpr NumberRange thickness_range = {.minimum = 0, .maximum = 1e6};
 constexpr NumberRange offset_range = {.minimum = -1e6, .maximum = 1e6};
 constexpr NumberRange tilt_range_deg = {.minimum = -360, .maximum = 360};
 
-// Makes the lens of what a file says.
+// Builds the lens from the content of a .zmx file.
 class Builder {
   public:
     explicit Builder(File file) : file_(std::move(file)) {}
@@ -79,7 +79,7 @@ class Builder {
             refuse({file_.path}, {.number = file_.last_line.number}, "coordinate breaks only", "at least one surface",
                    "Check that this is the file of a lens.");
         }
-        // Behind the last surface there is only the image.
+        // The last thickness ends at the image plane, which is no part of the lens.
         prescription.surfaces.back().thickness = 0;
         take_over_wavelengths(result);
         return result;
@@ -88,7 +88,8 @@ class Builder {
   private:
     Place place_of(const Surface& surface) const { return {file_.path, surface.number}; }
 
-    // All that are missing at once. The image's glass would be behind it, where no light goes.
+    // Throws one InputError for all missing glasses. The image's glass is not needed, as no light is traced behind the
+    // image.
     void require_glasses() const {
         std::vector<InputProblem> problems;
         for (std::size_t i = 0; i + 1 < file_.surfaces.size(); ++i) {
@@ -114,10 +115,10 @@ class Builder {
         }
     }
 
-    // Light that a plane mirror sends back goes on as if there were no mirror, through what follows as the mirror shows
-    // it. Behind the mirror Zemax counts along the old z, so that distances, curvatures and the tilts about x and y
-    // have the opposite signs of those in the mirror's image. The lens is laterally reversed by each mirror, which no
-    // distance, angle or centred surface tells.
+    // Unfolds plane mirrors: light that a mirror reflects continues straight, through the mirror image of the surfaces
+    // that follow. Behind the mirror Zemax counts along the old z, so that distances, curvatures and the tilts about x
+    // and y have the opposite signs of those in the mirror's image. Each mirror also reverses the lens laterally, which
+    // changes no distance, angle or centred surface.
     void unfold_mirrors() {
         bool reversed = false;
         for (Surface& surface : file_.surfaces) {
@@ -142,7 +143,7 @@ class Builder {
                              surface.medium_line.number, surface.number);
                 unfolded_ = true;
                 reversed = !reversed;
-                surface.kind = SurfaceKind::coordinate_break; // that is only a distance
+                surface.kind = SurfaceKind::coordinate_break; // without its reflection the mirror is only a distance
                 surface.parameters.clear();
             }
             if (reversed && std::isfinite(*surface.thickness)) {
@@ -163,9 +164,9 @@ class Builder {
         }
     }
 
-    // Whether the breaks leave the axis where it is.
+    // True if the breaks leave the optical axis unchanged.
     static bool stands_straight(const std::vector<CoordinateBreak>& breaks) {
-        constexpr double negligible = 1e-9; // mm, and of the axes' components
+        constexpr double negligible = 1e-9; // mm, and for components of the axes
         const Pose pose = Pose().along(breaks);
         double off = std::max(std::abs(pose.origin.x), std::abs(pose.origin.y));
         for (int axis = 0; axis < 3; ++axis) {
@@ -191,7 +192,7 @@ class Builder {
                        "Give them to the next surface.");
             }
         }
-        // A paraxial surface has a focal length, and a number for how path lengths are counted.
+        // A paraxial surface has two parameters: its focal length and the mode in which path lengths are counted.
         const int most = surface.kind == SurfaceKind::standard           ? 0
                          : surface.kind == SurfaceKind::coordinate_break ? 6
                          : surface.kind == SurfaceKind::paraxial         ? 2
@@ -209,7 +210,7 @@ class Builder {
         }
     }
 
-    // The power of a PARAXIAL surface, 1/mm.
+    // The power (1/mm) of a PARAXIAL surface.
     double ideal_power_of(const Surface& surface) const {
         const double focal_length = in_mm(surface, surface.kind_line, parameter_of(surface, 1));
         const Surface& before = file_.surfaces[static_cast<std::size_t>(surface.number) - 1];
@@ -229,7 +230,7 @@ class Builder {
         return found == surface.parameters.end() ? 0 : found->second.value;
     }
 
-    // A value of `dimension` lengths in mm.
+    // Converts a value of the dimension length^dimension from the file's unit to mm^dimension.
     double in_mm(const Surface& surface, const Line& line, double value, int dimension = 1) const {
         const double result = value * std::pow(*file_.unit, dimension) + 0.0;
         if (!std::isfinite(result)) {
@@ -310,7 +311,7 @@ class Builder {
         return result;
     }
 
-    // Zemax pads the list to 24 entries.
+    // Only the stated number of wavelengths is taken, as Zemax pads the list to 24 entries.
     void take_over_wavelengths(ZmxLens& result) const {
         for (const auto& [number, wavelength] : file_.wavelengths_um) {
             if (!file_.wavelength_count || number <= *file_.wavelength_count) {
@@ -328,7 +329,7 @@ class Builder {
     }
 
     File file_;
-    bool unfolded_ = false; // mirrors
+    bool unfolded_ = false; // true if the lens had mirrors
 };
 
 } // namespace

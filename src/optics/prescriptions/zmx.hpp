@@ -13,21 +13,21 @@ namespace vkfv::optics {
 
 struct ZmxLens {
     Prescription prescription;          // in mm, from the first surface behind the object to the last before the image
-    std::vector<double> wavelengths_um; // as the file lists them
+    std::vector<double> wavelengths_um; // in the order of the file
     double primary_wavelength_um = 0;
-    bool from_infinity = false; // the object is at infinity
+    bool from_infinity = false; // true if the object is at infinity
 };
 
-// Reads a lens in any encoding of as_utf8(). Understood are refracting surfaces of the types STANDARD and EVENASPH,
+// Reads a lens in any encoding of as_utf8(). Supported are refracting surfaces of the types STANDARD and EVENASPH,
 // coordinate breaks, PARAXIAL surfaces in air, which become ideal lenses, plane mirrors, which are unfolded, glasses of
 // the catalogues (those of GCAT first) and model glasses (of the Abbe number 0: without dispersion). The image's own
-// glass, behind which nothing is traced, is left out. configuration: see zmx::read_lines().
-// Zemax turns frames as CoordinateBreak does. What may change the lens and is not understood is an InputError that
-// names line, surface and keyword.
+// glass, behind which nothing is traced, is left out. configuration: see zmx::read_lines(). Zemax rotates frames as
+// CoordinateBreak does. Unsupported content that may change the lens is an InputError that names line, surface and
+// keyword.
 ZmxLens read_zmx(const std::filesystem::path& file, const GlassCatalog& glasses,
                  std::optional<int> configuration = std::nullopt);
 
-// The same of a file's bytes; `file` stands for it in messages.
+// Reads the bytes of a .zmx file as read_zmx() does; `file` stands for it in messages.
 ZmxLens parse_zmx(std::string_view bytes, const std::filesystem::path& file, const GlassCatalog& glasses,
                   std::optional<int> configuration = std::nullopt);
 

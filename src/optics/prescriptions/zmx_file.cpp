@@ -16,25 +16,26 @@ namespace vkfv::optics::zmx {
 
 namespace {
 
-// Keywords for what Zemax computes, optimizes, tolerances, draws or displays with: no lens depends on these.
+// Keywords of the file that only serve Zemax's computation, optimization, tolerancing and display: no lens depends on
+// them.
 constexpr std::string_view without_geometry[] = {
     "VERS", "NOTE", "PFIL", "LANG", "ENPD", "FNUM", "OBNA", "FLOA", "GFAC", "RAIM", "PUSH", "SDMA", "OMMA",
     "ROPD", "HYPR", "PICB", "XFLN", "YFLN", "FWGN", "XFLD", "YFLD", "FWGT", "VDXN", "VDYN", "VCXN", "VCYN",
     "VANN", "ZVDX", "ZVDY", "ZVCX", "ZVCY", "ZVAN", "WWGT", "WWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN",
     "WAVN", "AUTH", "DBDT", "SCOL", "TOLE", "LUID", "SSID", "FCOM", "IWDP", "BLNK", "TOL",  "MOFF", "DMFS"};
 
-// The same of a surface. Solves, pick-ups and variables (MAZH, PZUP, PPAR, VDSZ, VPAR, VCON, TOLE) leave their outcome
-// in the value itself; MEMA is the glass's edge beyond the aperture.
+// Keywords of surfaces that affect no lens. Solves, pick-ups and variables (MAZH, PZUP, PPAR, VDSZ, VPAR, VCON,
+// TOLE) leave their outcome in the value itself; MEMA is the glass's edge beyond the aperture.
 constexpr std::string_view without_geometry_of_surfaces[] = {"COMM", "FIMP", "HIDE", "MIRR", "SLAB", "POPS", "COAT",
                                                              "MEMA", "MAZH", "PZUP", "PPAR", "VDSZ", "VPAR", "VCON"};
 
 constexpr std::string_view of_surfaces[] = {"TYPE", "CURV", "DISZ", "GLAS", "CONI", "PARM",
                                             "XDAT", "DIAM", "CLAP", "FLAP", "OBDC", "STOP"};
 
-// Apertures that are not circular, and what stands in them.
+// Keywords of apertures that are not circular and of obscurations, which are refused.
 constexpr std::string_view other_apertures[] = {"SQAP", "ELAP", "USAP", "OBSC", "SQOB", "ELOB", "USOB", "SPID"};
 
-// Operands of configurations that change a lens in a way that is not taken over.
+// Operands of configurations that change a lens in a way that is not supported.
 constexpr std::string_view other_operands[] = {"PRAM", "IGNM", "TEMP", "PRES"};
 
 bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
@@ -78,7 +79,7 @@ class Reader {
     }
 
   private:
-    // Other files that are named .zmx, or given by mistake.
+    // Rejects other files that are named .zmx, or given by mistake.
     void require_lens_file(std::string_view bytes, std::string_view text) const {
         const char* found = bytes.starts_with("PK")                       ? "a ZIP archive"
                             : text.find('\0') != std::string_view::npos   ? "bytes that are no text"
@@ -93,7 +94,7 @@ class Reader {
         }
     }
 
-    // Of the surface that is being read.
+    // The file position for messages: names the surface that is being read, if any.
     Place place() const {
         const bool in_surface = !file_.surfaces.empty() && !behind_surfaces_;
         return {file_.path, in_surface ? std::optional(file_.surfaces.back().number) : std::nullopt};
@@ -143,7 +144,7 @@ class Reader {
             configurations_ = std::max(1, integer_at(place(), line, 0, 0, 1000));
             active_ = line.words.size() > 1 ? std::max(1, integer_at(place(), line, 1, 0, configurations_)) : 1;
         } else if (is_one_of(keyword, without_geometry)) {
-            // Notes, tolerances and the like may stand anywhere.
+            // Notes, tolerances and similar lines may stand anywhere in the file.
         } else if (configurations_ > 1 && line.words.size() > 2) {
             operands_.push_back(line);
         } else {
@@ -151,7 +152,8 @@ class Reader {
         }
     }
 
-    // The operands of the merit function behind the surfaces are too many to list, but have numbers alone behind them.
+    // Operands of the merit function behind the surfaces are too many to list; they are recognized by having only
+    // numbers behind them.
     void take_other(const Line& line) {
         const bool numbers = line.keyword.size() == 4 && !line.words.empty() &&
                              std::all_of(line.words.begin(), line.words.end(), [](const std::string& word) {
@@ -182,8 +184,8 @@ class Reader {
                      file_.path.string(), fmt::join(named, ", "));
     }
 
-    // The values of the surfaces are those of the configuration that was active. Another one's stand behind MNUM, as
-    // operand, surface or wavelength, configuration and value.
+    // The surfaces hold the values of the configuration that was active when the file was saved. Values of the others
+    // stand behind MNUM, as operand, surface or wavelength, configuration and value.
     void choose_configuration() {
         if (!configuration_) {
             if (configurations_ > 1) {
@@ -230,11 +232,11 @@ class Reader {
         }
         constexpr std::string_view of_a_surface[] = {"THIC", "CRVT", "CONN", "GLSS", "SDIA"};
         if (!is_one_of(line.keyword, of_a_surface)) {
-            return; // fields, apertures, titles
+            return; // fields, apertures and titles change no lens
         }
         Surface& surface = file_.surfaces[static_cast<std::size_t>(
             integer_at(lens, line, 0, 0, static_cast<int>(file_.surfaces.size()) - 1))];
-        constexpr double infinite = 1e10; // as Zemax writes an infinite thickness here
+        constexpr double infinite = 1e10; // Zemax writes an infinite thickness so here
         if (line.keyword == "THIC") {
             const double thickness = number_at(lens, line, 2);
             surface.thickness = thickness >= infinite ? INFINITY : thickness;
@@ -245,7 +247,7 @@ class Reader {
             surface.conic = number_at(lens, line, 2);
         } else if (line.keyword == "SDIA") {
             surface.diameter = number_at(lens, line, 2, {.minimum = 0, .minimum_included = true});
-        } else { // GLSS
+        } else { // keyword GLSS
             surface.medium_line = line;
             std::string name = line.words[2];
             if (name.size() >= 2 && name.front() == '"' && name.back() == '"') {
@@ -255,7 +257,7 @@ class Reader {
         }
     }
 
-    // Glasses are looked up when the catalogues (GCAT) and the wavelengths are known, which may stand behind them.
+    // Glasses are looked up at the end, because catalogues (GCAT) and wavelengths may stand behind them.
     void take_medium(Surface& surface) {
         const Line& line = surface.medium_line;
         if (line.keyword.empty()) {
@@ -271,7 +273,7 @@ class Reader {
         const Place place{file_.path, surface.number};
         try {
             surface.medium = glasses_.medium_of(place, line, search);
-        } catch (const InputError& error) { // none if this turns out to be the image
+        } catch (const InputError& error) { // harmless if this surface turns out to be the image
             surface.medium = Medium::air();
             surface.medium_problems = error.problems();
         }
@@ -301,7 +303,8 @@ class Reader {
     }
 
     void take_unit(const Line& line) {
-        const std::map<std::string, double> units = {{"MM", 1}, {"CM", 10}, {"IN", 25.4}, {"METER", 1000}}; // mm
+        // The length of each unit in mm.
+        const std::map<std::string, double> units = {{"MM", 1}, {"CM", 10}, {"IN", 25.4}, {"METER", 1000}};
         const auto found = line.words.empty() ? units.end() : units.find(line.words.front());
         if (found == units.end()) {
             refuse(place(), line, line.rest, "one of the lens units MM, CM, IN and METER",
@@ -320,7 +323,7 @@ class Reader {
 
     void take_wavelengths(const Line& line) {
         const auto range = NumberRange::positive();
-        if (line.keyword == "WAVM") { // number, wavelength, weight
+        if (line.keyword == "WAVM") { // values of WAVM: number, wavelength, weight
             file_.wavelengths_um[integer_at(place(), line, 0, 1, 1000)] = number_at(place(), line, 1, range);
             return;
         }
@@ -375,7 +378,7 @@ class Reader {
                 refuse(place(), line, line.rest, "an aperture about the vertex",
                        "Remove the aperture's decentre; coordinate breaks decentre a surface.");
             }
-        } else { // STOP
+        } else { // keyword STOP
             surface.stop = true;
             surface.stop_line = line;
         }
@@ -383,11 +386,11 @@ class Reader {
 
     File file_;
     bool behind_surfaces_ = false;
-    std::optional<int> configuration_; // that is asked for
+    std::optional<int> configuration_; // the requested configuration
     int configurations_ = 1;
     int active_ = 1;
-    std::vector<Line> operands_;         // of configurations
-    std::map<std::string, int> unknown_; // keywords, with their first lines
+    std::vector<Line> operands_;         // operands of all configurations
+    std::map<std::string, int> unknown_; // unknown keywords with their first lines
     GlassSearch search_;
     Glasses glasses_;
 };

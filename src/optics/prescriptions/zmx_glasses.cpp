@@ -11,7 +11,7 @@ namespace vkfv::optics::zmx {
 
 namespace {
 
-// The nd and vd that stand behind the name of a glass. Zemax writes 1.5 and 40 where it knows neither.
+// The nd and vd stated behind the name of a glass. Zemax writes 1.5 and 40 where it knows neither.
 std::optional<ModelGlass> stated_in(const Line& line) {
     if (line.words.size() < 5) {
         return std::nullopt;
@@ -52,7 +52,7 @@ Medium Glasses::medium_of(const Place& place, const Line& line, const GlassSearc
         if (auto found = catalog_.find(name, search)) {
             return *std::move(found);
         }
-    } catch (const InputError& error) { // the catalogues do not agree, or the record is wrong
+    } catch (const InputError& error) { // catalogues disagree or the record is faulty
         refuse(place, line, name, error.problem().expected, error.problem().remedy);
     }
     auto stated = glass_of_code(name);

@@ -12,7 +12,7 @@ namespace vkfv::optics::zmx {
 
 class Glasses {
   public:
-    // source: of the model glasses, for their users.
+    // source: the text that model glasses state as their origin.
     Glasses(const GlassCatalog& catalog, std::string source) : catalog_(catalog), source_(std::move(source)) {}
 
     // The medium that a GLAS line names: a glass of the catalogues, else a model glass by its six-digit code or by the
@@ -20,7 +20,8 @@ class Glasses {
     Medium medium_of(const Place& place, const Line& line, const GlassSearch& search);
 
   private:
-    // Named by its six-digit code, and a count where several share that. Zemax's Abbe number 0 is no dispersion at all.
+    // A model glass named by its six-digit code, with a count appended where several glasses share the code. Zemax's
+    // Abbe number 0 means no dispersion.
     Medium model(double nd, double vd);
 
     const GlassCatalog& catalog_;

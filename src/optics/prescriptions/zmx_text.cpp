@@ -13,7 +13,7 @@ namespace vkfv::optics::zmx {
 
 namespace {
 
-constexpr std::size_t longest_quotation = 60; // characters of a line that a message repeats
+constexpr std::size_t longest_quotation = 60; // characters of a line that a message quotes
 
 constexpr std::string_view white_space = " \t\f\v\r";
 
@@ -56,7 +56,7 @@ std::optional<double> as_number(std::string_view word) {
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
         return std::nullopt;
     }
-    return value + 0.0; // no negative zeros
+    return value + 0.0; // + 0.0 avoids a negative zero
 }
 
 void refuse(const Place& place, const Line& line, std::string found, std::string expected, std::string remedy) {

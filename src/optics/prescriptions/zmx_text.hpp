@@ -1,5 +1,4 @@
-// The text of a .zmx file: its lines, the numbers on them, and what is wrong with them. Only the files of this import
-// include this.
+// The text of a .zmx file: its lines, their numbers, and errors about them. Only the files of this import include this.
 #pragma once
 
 #include "core/toml/toml_reader.hpp"
@@ -16,21 +15,21 @@ struct Line {
     int number = 0;
     bool indented = false;
     std::string keyword{};
-    std::string rest{};               // trimmed
-    std::vector<std::string> words{}; // of the rest
+    std::string rest{};               // text behind the keyword, trimmed
+    std::vector<std::string> words{}; // words of `rest`
 };
 Line line_of(std::string_view text, int number);
 
 std::string trimmed(std::string_view text);
-std::optional<double> as_number(std::string_view word); // finite
+std::optional<double> as_number(std::string_view word); // none unless the word is a finite number
 
-// Where a line belongs, for messages.
+// The file and surface to which a line belongs, for messages.
 struct Place {
     const std::filesystem::path& file;
-    std::optional<int> surface{}; // its number; none: the lens
+    std::optional<int> surface{}; // number of the surface; none: the line concerns the lens
 };
 
-// InputErrors that name file, line, surface and keyword.
+// Throws an InputError that names file, line, surface and keyword.
 [[noreturn]] void refuse(const Place& place, const Line& line, std::string found, std::string expected,
                          std::string remedy);
 double number_at(const Place& place, const Line& line, std::size_t word,

@@ -1,7 +1,7 @@
 // Numbers with bounds: affine arithmetic (J. Stolfi and L. H. de Figueiredo, "Self-validated numerical methods and
-// applications", 1997). A form stands for a function of a few coordinates that is known to a linear part and a
-// remainder, so that what two numbers have in common cancels where plain intervals would add: bounds of a whole train
-// stay narrow, and the remainders fall with the square of the box. Rounding is not directed outward: see bundle.cpp.
+// applications", 1997). An affine form bounds a function of a few coordinates by a linear part and a remainder, so that
+// dependences that two numbers share cancel where plain intervals would add: bounds of a whole train stay narrow, and
+// the remainders fall with the square of the box. Rounding is not directed outward: see bundle.cpp.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@ struct Range {
     double magnitude() const { return std::max(std::abs(low), std::abs(high)); }
 };
 
-// centre + sum of slopes[i] e_i + rest e, with |e_i| <= 1 the coordinates of a box and |e| <= 1 unknown. The function's
-// value is one of these wherever it is defined.
+// centre + sum of slopes[i] e_i + rest e, where |e_i| <= 1 are the coordinates of a box and |e| <= 1 is unknown. The
+// function takes one of these values wherever it is defined.
 struct Affine {
     static constexpr std::size_t coordinates = 5;
 
@@ -45,7 +45,7 @@ inline Affine constant(double value) {
     return {.centre = value};
 }
 
-// Anything within the range, whatever the coordinates.
+// The form of a number of which only its range is known.
 inline Affine anything_in(const Range& range) {
     return {.centre = range.middle(), .rest = range.radius()};
 }
@@ -76,7 +76,7 @@ inline Affine operator-(const Affine& a, const Affine& b) {
     return a + -1.0 * b;
 }
 
-// e_i^2 lies between 0 and 1, e_i e_j between -1 and 1.
+// The product uses that e_i^2 lies between 0 and 1 and e_i e_j between -1 and 1.
 inline Affine operator*(const Affine& a, const Affine& b) {
     const double linear_a = a.radius() - a.rest;
     const double linear_b = b.radius() - b.rest;
@@ -95,7 +95,7 @@ inline Affine operator*(const Affine& a, const Affine& b) {
     return result;
 }
 
-// What is left out of the product of a number with itself has one sign.
+// The square is narrower than a * a, because the remainder's square has one sign.
 inline Affine square(const Affine& a) {
     const double radius = a.radius();
     const double half = 0.5 * radius * radius;
@@ -106,15 +106,15 @@ inline Affine square(const Affine& a) {
     return result;
 }
 
-// slope * a + offset, give or take `error`.
+// The linear function slope * a + offset, with a remainder of at most `error`.
 inline Affine line(const Affine& a, double slope, double offset, double error) {
     Affine result = slope * a + constant(offset);
     result.rest += error;
     return result;
 }
 
-// Of those values of a that are >= 0; a.high() > 0. The line between the ends is below the root, and farthest from it
-// where the slopes are equal.
+// The square root of the values of a that are >= 0; requires a.high() > 0. The chord between the ends lies below the
+// root, farthest from it where their slopes are equal.
 inline Affine square_root(const Affine& a) {
     const double low = std::sqrt(std::max(a.low(), 0.0));
     const double slope = 1 / (low + std::sqrt(a.high()));
@@ -123,7 +123,7 @@ inline Affine square_root(const Affine& a) {
     return line(a, slope, 0.5 * (least + most), 0.5 * (most - least));
 }
 
-// a.low() > 0.
+// 1 / a; requires a.low() > 0.
 inline Affine reciprocal(const Affine& a) {
     const double low = a.low();
     const double high = a.high();
@@ -132,8 +132,7 @@ inline Affine reciprocal(const Affine& a) {
     return line(a, -1 / (low * high), 0.5 * (least + most), 0.5 * (most - least));
 }
 
-// By the tangent in the middle, as no second derivative exceeds 1; from where that says little, by what all cosines
-// are.
+// A sine or cosine by the tangent at the centre: its second derivative is at most 1. Wide forms are bounded by [-1, 1].
 inline Affine by_tangent(const Affine& a, double value, double slope) {
     const double radius = a.radius();
     return radius < 1 ? line(a, slope, value - slope * a.centre, 0.5 * radius * radius) : anything_in({-1, 1});

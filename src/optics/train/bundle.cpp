@@ -14,12 +14,12 @@ namespace {
 using physics::f64::Dispersion;
 using physics::f64::Surface;
 
-// Apertures count as wider by this share and this length (mm). The device traces in float, whose rounding at the
-// lengths of an illuminator (100 mm) is 1e-5 mm; what double's rounding does to the bounds themselves, 1e-13 mm, is far
-// less.
+// Apertures are enlarged by this share and this length (mm), so that rounding excludes no light. The device traces in
+// float, whose rounding at the lengths of an illuminator (100 mm) is 1e-5 mm; the rounding of the bounds themselves in
+// double, 1e-13 mm, is far less.
 constexpr double aperture_share = 1e-5;
 constexpr double aperture_rounding = 1e-5;
-// The same for products of direction cosines.
+// The tolerance for the rounding of products of direction cosines.
 constexpr double rounding = 1e-6;
 
 struct Vector {
@@ -36,22 +36,22 @@ Vector operator*(const Affine& factor, const Vector& a) {
     return {factor * a.x, factor * a.y, factor * a.z};
 }
 
-// The lines of the bundle's rays: `position` is any point of each, `direction` of length `index`.
+// The lines of the bundle's rays: `position` is any point of each line, `direction` has the length `index`.
 struct Bundle {
     Vector position;
     Vector direction;
     Affine index;
 };
 
-// Collects the conditions that a ray must meet to go on, each a number that must not be positive, and remembers the one
+// Collects the conditions that a ray must meet to continue, each a number that must not be positive, and keeps the one
 // that comes closest to excluding the whole box.
 class Conditions {
   public:
-    // False if the number is positive in the whole box, so that none of its rays goes on.
+    // False if the number is positive in the whole box, so that none of its rays continues.
     bool require_not_positive(const Affine& number) {
         const double radius = number.radius();
         const double nearness = radius > 0 ? number.centre / radius : -std::numeric_limits<double>::infinity();
-        // The first condition that stops the middle ray decides: that ray does not reach what lies behind.
+        // The first condition that stops the middle ray decides, because that ray reaches no later surface.
         if (nearness_ <= 0 && nearness > nearness_) {
             nearness_ = nearness;
             nearest_ = number;
@@ -61,20 +61,20 @@ class Conditions {
     }
     bool require_within(const Affine& x, const Affine& y, const Affine& radius) {
         note_place(x, y);
-        // A point inside a circle lies below all of its tangents. Test the tangent that the box exceeds most.
+        // A point inside a circle lies below all of its tangents. The test uses the tangent that the box exceeds most.
         const double length = std::hypot(x.centre, y.centre);
         const bool central = !(length > 0);
         return require_not_positive((central ? 1.0 : x.centre / length) * x + (central ? 0.0 : y.centre / length) * y -
                                     radius);
     }
-    // Records where the bundle is, in any unit.
+    // Records how the bundle's place (in any unit) depends on the coordinates of the box.
     void note_place(const Affine& x, const Affine& y) {
         for (std::size_t i = 0; i < spread_.size(); ++i) {
             spread_[i] = std::abs(x.slopes[i]) + std::abs(y.slopes[i]);
         }
     }
-    // How much each coordinate of the box contributes to its being undecided: through the bundle's place if that could
-    // not be bounded, else through the nearest condition, whose rest grows with the square of the place's slopes.
+    // The influence of each coordinate of the box on the box being undecided: on the bundle's place if that could not
+    // be bounded, else on the nearest condition, whose rest grows with the square of the place's slopes.
     std::array<double, Affine::coordinates> influences(bool bounded) const {
         const auto& spread = bounded ? spread_at_nearest_ : spread_;
         double squares = 0;
@@ -102,7 +102,7 @@ enum class Passage { excluded, bounded, unbounded };
 struct Meeting {
     Vector point;
     Affine curvature; // the unit normal is (-curvature x, -curvature y, normal_z)
-    Affine cosine;    // direction . normal
+    Affine cosine;    // dot product of direction and normal
 };
 
 struct Met {
@@ -131,7 +131,7 @@ bool deflects(const Surface& surface) {
            coefficients_of(surface.dispersion_before) != coefficients_of(surface.dispersion_after);
 }
 
-// c_0 x + c_1 x^2 + ..., by Horner's rule.
+// The polynomial c_0 x + c_1 x^2 + ..., by Horner's rule.
 template <std::size_t size>
 Affine powers(const std::array<double, size>& coefficients, const Affine& x) {
     Affine sum;
@@ -163,7 +163,7 @@ Vector turned(const Vector& v, const Affine& angle) {
     return {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
 }
 
-// A polynomial's part of an even asphere's sag (mm), and (1/r) d/dr of it (1/mm), at q = r^2.
+// The polynomial part of an even asphere's sag (mm), and the (1/r) d/dr of this part (1/mm), at q = r^2.
 Affine aspheric_sag(const Surface& surface, const Affine& q) {
     return q * powers(coefficients_of(surface), q);
 }
@@ -176,7 +176,7 @@ Affine aspheric_slope(const Surface& surface, const Affine& q) {
     return sum;
 }
 
-// (1/r) d sag / d r of the whole asphere; none: part of q lies outside its conic.
+// (1/r) d sag / d r of the whole asphere; none if part of q lies outside its conic.
 std::optional<Affine> slope_over_r(const Surface& surface, const Affine& q) {
     const double c = surface.curvature;
     const Affine under_root = constant(1) - ((1 + surface.conic) * c * c) * q;
@@ -209,21 +209,21 @@ ApertureBounds bounds_of(const Surface& surface, double radius) {
     return bounds;
 }
 
-// Starts at the point on the conic, from which the asphere differs by its polynomial only. By the mean value theorem
-// the remaining way is that height divided by the rate of approach at some point in between. This bounds the point at
-// which Newton's method (physics/asphere.glsl) has converged.
+// The search starts at the point on the conic, from which the asphere differs by its polynomial only. By the mean value
+// theorem the remaining distance is that height divided by the rate of approach at some point in between. This bounds
+// the point to which Newton's method (physics/asphere.glsl) converges.
 Met meet_asphere(const Surface& surface, const Vector& direction, Vector point, const ApertureBounds& aperture) {
     const auto& [radius, heights, far_heights] = aperture;
     const double most_q = std::max(square(point.x).high() + square(point.y).high(), radius * radius);
     const Affine height = aspheric_sag(surface, square(point.x) + square(point.y));
     const Affine outward = direction.x * point.x + direction.y * point.y;
     const double across_squared = square(direction.x).high() + square(direction.y).high();
-    // Both points lie between these heights.
+    // Both points lie between these heights, which bounds the distance between them.
     double way = (std::max(heights.high, point.z.high()) - std::min(heights.low, point.z.low())) / direction.z.low();
     Affine rate;
-    constexpr int rounds = 2; // the second uses the way that the first found
+    constexpr int rounds = 2; // the second round uses the distance found by the first
     for (int round = 0; round < rounds; ++round) {
-        // |r'^2 - r^2| between the two points.
+        // `spread` bounds |r'^2 - r^2| between the two points.
         const double spread = way * (2 * outward.range().magnitude() + way * across_squared);
         const Affine q = square(point.x) + square(point.y);
         const auto slope =
@@ -251,7 +251,7 @@ Met meet_asphere(const Surface& surface, const Vector& direction, Vector point, 
                         .cosine = scale * (direction.z - *slope * (direction.x * point.x + direction.y * point.y))}};
 }
 
-// physics::meet_surface.
+// Bounds of physics::meet_surface.
 Met meet(const Surface& surface, const Bundle& bundle, const std::optional<ApertureBounds>& aperture,
          Conditions& conditions) {
     const Vector& direction = bundle.direction;
@@ -297,7 +297,8 @@ Met meet(const Surface& surface, const Bundle& bundle, const std::optional<Apert
     return {.meeting = {.point = point, .curvature = c * scale, .cosine = scale * root}};
 }
 
-// The direction's axial part from the other two; the trace takes the positive root whatever the ray's own sign.
+// Computes the direction's axial part from the other two; as in the trace it is the positive root, whatever the sign of
+// the ray's own.
 Passage set_axial(Bundle& bundle, Conditions& conditions) {
     const Affine axial = square(bundle.index) - square(bundle.direction.x) - square(bundle.direction.y);
     if (!conditions.require_not_positive(-1.0 * axial)) {
@@ -310,7 +311,7 @@ Passage set_axial(Bundle& bundle, Conditions& conditions) {
     return Passage::bounded;
 }
 
-// physics::refract_scaled.
+// Bounds of physics::refract_scaled.
 Passage refract(Bundle& bundle, const Meeting& meeting, const Affine& index_after, Conditions& conditions) {
     const Affine under_root = square(meeting.cosine) + square(index_after) - square(bundle.index);
     if (!conditions.require_not_positive(-1.0 * under_root)) {
@@ -327,7 +328,7 @@ Passage refract(Bundle& bundle, const Meeting& meeting, const Affine& index_afte
     return set_axial(bundle, conditions);
 }
 
-// physics::pass_ideal_lens.
+// Bounds of physics::pass_ideal_lens.
 Passage pass_lens(Bundle& bundle, double power, const Affine& index_after, Conditions& conditions) {
     const double focal_length = 1 / power;
     const Affine way = -focal_length * bundle.index - bundle.position.z;
@@ -348,8 +349,8 @@ Passage pass_lens(Bundle& bundle, double power, const Affine& index_after, Condi
     return set_axial(bundle, conditions);
 }
 
-// Whether the lines come within a radius of the axis between two heights. Everything is multiplied by the direction's
-// z, which may be 0.
+// False if none of the lines comes within a radius of the axis between two heights. Everything is multiplied by the
+// direction's z, which may be 0.
 bool may_meet_within(const Bundle& bundle, double radius, const Range& heights, Conditions& conditions) {
     const Vector& direction = bundle.direction;
     const Affine way = anything_in(heights) - bundle.position.z;
@@ -357,7 +358,7 @@ bool may_meet_within(const Bundle& bundle, double radius, const Range& heights, 
                                      bundle.position.y * direction.z + way * direction.y, radius * direction.z);
 }
 
-// On either side of the surface. A condition that excludes the near side does not count while the far side remains.
+// Tests both sides of a conic. A condition that excludes the near side does not count while the far side remains.
 bool may_meet(const Bundle& bundle, const ApertureBounds& aperture, Conditions& conditions) {
     const Conditions before = conditions;
     if (may_meet_within(bundle, aperture.radius, aperture.heights, conditions)) {
@@ -371,7 +372,7 @@ bool may_meet(const Bundle& bundle, const ApertureBounds& aperture, Conditions& 
 }
 
 EmissionCoordinate best_cut(const EmissionBox& box, const Conditions& conditions, bool bounded, bool is_turned) {
-    // Over so wide an angle a linear bound says nothing: halve it first.
+    // A linear bound over such a wide angle is useless, so the angle is halved first.
     for (const EmissionCoordinate angle : {azimuth, turn}) {
         if (box[angle].radius() >= 1 && (angle != turn || is_turned)) {
             return angle;
@@ -456,7 +457,7 @@ std::optional<EmissionCoordinate> BundleTracer::may_pass(const EmissionBox& box)
             return std::nullopt;
         }
         if (!deflects(surface)) {
-            continue; // the rays stay on their lines
+            continue; // an undisplaced surface leaves the rays on their lines
         }
         const Affine index_after = index_of(surface.index_after, surface.dispersion_after, x);
         if (is_lens(surface)) {

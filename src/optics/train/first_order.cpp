@@ -25,7 +25,8 @@ RayTransfer free_space(double distance, double index) {
 
 namespace {
 
-// From the previous vertex, mm. Where the frame turns on the way, as behind a fold mirror, the axis keeps its length.
+// The axial distance (mm) from the previous vertex. Where the frame is rotated between them, as behind a fold mirror,
+// the distance along the axis counts.
 double way_to(const physics::f64::Surface& surface) {
     return surface.rotation_zz == 1
                ? surface.distance

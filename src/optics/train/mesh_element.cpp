@@ -25,7 +25,7 @@ struct PlaceHash {
     }
 };
 
-// From the lower index to the higher, and which way a facet goes along it.
+// An edge from the lower vertex index to the higher, and the direction in which a facet runs along it.
 struct Edge {
     std::uint32_t low, high;
     bool forward;
@@ -46,7 +46,7 @@ std::vector<Edge> sorted_edges(const std::vector<glm::uvec3>& triangles) {
     return edges;
 }
 
-// Calls use(first, end) for the edges between each two vertices.
+// Calls use(first, end) with the range of edges that join the same two vertices.
 template <class Use>
 void for_each_edge(const std::vector<Edge>& edges, Use use) {
     for (std::size_t first = 0; first < edges.size();) {
@@ -59,15 +59,15 @@ void for_each_edge(const std::vector<Edge>& edges, Use use) {
     }
 }
 
-// Facets that hang together by edges.
+// A set of facets connected by edges.
 struct Shell {
     std::vector<std::uint32_t> facets;
-    double six_volumes = 0; // positive: they go round counter-clockwise seen from outside
+    double six_volumes = 0; // six times the volume, positive if the facets run counter-clockwise seen from outside
     BoxTree::Box box{glm::dvec3(HUGE_VAL), glm::dvec3(-HUGE_VAL)};
 };
 
 std::vector<Shell> shells_of(const Facets& facets) {
-    std::vector<std::uint32_t> of(facets.triangles.size()); // a facet of the same shell, or itself
+    std::vector<std::uint32_t> of(facets.triangles.size()); // union-find parents: a facet of the same shell, or itself
     std::iota(of.begin(), of.end(), 0u);
     const auto root = [&](std::uint32_t facet) {
         while (of[facet] != facet) {
@@ -85,14 +85,15 @@ std::vector<Shell> shells_of(const Facets& facets) {
     std::vector<Shell> shells;
     std::vector<std::size_t> number(of.size());
     for (std::uint32_t facet = 0; facet < of.size(); ++facet) {
-        if (of[facet] == facet) { // the first of its shell
+        if (of[facet] == facet) { // the root, which is the first facet of its shell
             number[facet] = shells.size();
             shells.emplace_back();
         }
         Shell& shell = shells[number[root(facet)]];
         shell.facets.push_back(facet);
         const glm::uvec3& t = facets.triangles[facet];
-        const glm::dvec3 middle = facets.vertices[facets.triangles[shell.facets.front()].x]; // near: far ones round
+        // The origin is near, because a far one would lose digits.
+        const glm::dvec3 middle = facets.vertices[facets.triangles[shell.facets.front()].x];
         const glm::dvec3 a = facets.vertices[t.x], b = facets.vertices[t.y], c = facets.vertices[t.z];
         shell.six_volumes += glm::dot(a - middle, glm::cross(b - middle, c - middle));
         shell.box = {glm::min(shell.box.lower, glm::min(a, glm::min(b, c))),
@@ -101,10 +102,10 @@ std::vector<Shell> shells_of(const Facets& facets) {
     return shells;
 }
 
-const glm::dvec3 any_direction = glm::normalize(glm::dvec3(0.4371, 0.7713, 0.4627)); // along no usual edge
+const glm::dvec3 any_direction = glm::normalize(glm::dvec3(0.4371, 0.7713, 0.4627)); // parallel to no usual edge
 
-// How often a shell is crossed by the ray from a point in that direction (Moeller and Trumbore, "Fast, minimum storage
-// ray-triangle intersection", 1997).
+// The number of crossings of a shell by the ray from a point in any_direction (Moeller and Trumbore, "Fast, minimum
+// storage ray-triangle intersection", 1997).
 int crossings_of(const Facets& facets, const Shell& shell, const glm::dvec3& from) {
     int crossings = 0;
     for (const std::uint32_t facet : shell.facets) {
@@ -127,7 +128,7 @@ Facets welded(const std::vector<glm::dvec3>& vertices, const std::vector<glm::uv
     std::vector<std::uint32_t> place;
     place.reserve(vertices.size());
     for (const glm::dvec3& vertex : vertices) {
-        const glm::dvec3 key = vertex + 0.0; // -0 and 0 are one
+        const glm::dvec3 key = vertex + 0.0; // + 0.0 makes -0 equal to 0
         const auto [entry, is_new] = indices.try_emplace(key, static_cast<std::uint32_t>(result.vertices.size()));
         if (is_new) {
             result.vertices.push_back(key);
@@ -167,7 +168,7 @@ Facets turned_outward(Facets facets) {
     const BoxTree tree(boxes);
     std::vector<bool> turns;
     for (std::uint32_t one = 0; one < shells.size(); ++one) {
-        // Within an odd number of others it is a hole's wall.
+        // A shell within an odd number of others is the wall of a hole.
         const glm::dvec3 inside = facets.vertices[facets.triangles[shells[one].facets.front()].x];
         int crossings = 0;
         tree.walk(inside, any_direction, HUGE_VAL, [&](std::uint32_t other, double farthest) {
@@ -188,7 +189,7 @@ Facets turned_outward(Facets facets) {
 }
 
 std::vector<glm::dvec3> normals_of(const Facets& facets) {
-    constexpr double thinnest = 1e-6; // beside its length: single precision gives its corners
+    constexpr double thinnest = 1e-6; // ratio of area to squared length: corners are in single precision
     std::vector<glm::dvec3> normals;
     normals.reserve(facets.triangles.size());
     std::vector<std::uint32_t> slivers;
@@ -205,9 +206,9 @@ std::vector<glm::dvec3> normals_of(const Facets& facets) {
     if (slivers.empty()) {
         return normals;
     }
-    // That of the facet across the longest edge, unless that is a sliver too.
+    // A sliver takes the normal of the facet across its longest edge, unless that is a sliver too.
     const std::vector<Edge> edges = sorted_edges(facets.triangles);
-    std::map<std::uint32_t, std::pair<double, std::uint32_t>> neighbours; // of a sliver: the edge's length, the facet
+    std::map<std::uint32_t, std::pair<double, std::uint32_t>> neighbours; // by sliver: edge length and facet
     for_each_edge(edges, [&](std::size_t first, std::size_t end) {
         const double length = glm::distance(facets.vertices[edges[first].low], facets.vertices[edges[first].high]);
         for (std::size_t one = first; one < end; ++one) {

@@ -14,7 +14,7 @@
 
 namespace vkfv::optics {
 
-// Triangles of vertices at different places, none with a vertex twice.
+// Triangles between distinct vertices; no triangle has a vertex twice.
 struct Facets {
     std::vector<glm::dvec3> vertices; // mm
     std::vector<glm::uvec3> triangles;
@@ -23,15 +23,16 @@ struct Facets {
 struct MeshElement {
     enum class Kind { glass, mirror, absorber } kind = Kind::absorber;
     std::string name;
-    Facets facets; // in its own frame
-    // Of that frame, in the specimen frame with its origin in the paraxial object plane (mm); the light's way folded.
+    Facets facets; // in the element's own frame
+    // Pose of the element's frame in the specimen frame, with the origin in the paraxial object plane (mm); the path is
+    // folded.
     Pose pose;
-    Medium glass = Medium::air();       // inside
-    Medium surrounding = Medium::air(); // outside
-    double reflectance = 1;             // of a mirror
+    Medium glass = Medium::air();       // medium inside a glass element
+    Medium surrounding = Medium::air(); // medium outside
+    double reflectance = 1;             // reflectance of a mirror, 0 to 1
 };
 
-// As it stands in the room, in the frame of the other elements (Element of instrument.hpp).
+// An element placed in the room, in the frame of the other elements (Element of instrument.hpp).
 struct PlacedMesh {
     MeshElement::Kind kind = MeshElement::Kind::absorber;
     std::string name;
@@ -40,25 +41,25 @@ struct PlacedMesh {
     physics::f64::Surface surface{}; // index_before outside, index_after inside
 };
 
-// Equal vertices as one, without triangles that then have one twice.
+// Merges equal vertices and drops triangles that then have a vertex twice.
 Facets welded(const std::vector<glm::dvec3>& vertices, const std::vector<glm::uvec3>& triangles);
 
-// What a mesh lacks to be closed: every edge lies between two facets that go round the same way.
+// The defects by which a mesh is not closed: in a closed mesh every edge joins two facets of the same orientation.
 struct Openness {
-    std::size_t open_edges = 0;   // with a facet on one side alone
-    std::size_t turned_edges = 0; // whose facets go round different ways, or of more than two facets
-    glm::dvec3 first{0};          // an end of the first such edge
+    std::size_t open_edges = 0;   // edges of one facet alone
+    std::size_t turned_edges = 0; // edges between facets of opposite orientation, or of more than two facets
+    glm::dvec3 first{0};          // an end of the first such edge (mm)
 
     bool closed() const { return open_edges == 0 && turned_edges == 0; }
 };
 Openness openness_of(const Facets& facets);
 
-// Of a closed mesh: its facets go round counter-clockwise seen from outside, those of a hole's wall seen from within
-// the hole. Each body and hole by itself, however the file has them.
+// Orients the facets of a closed mesh counter-clockwise seen from outside; those of a hole's wall counter-clockwise
+// seen from within the hole. Each body and hole is oriented by itself, whatever its orientation in the file.
 Facets turned_outward(Facets facets);
 
-// Unit vectors, to where the corners go round counter-clockwise. Slivers, of which rounding decides, have that of their
-// neighbour.
+// Unit normals, on the side from which the corners run counter-clockwise. A sliver, whose own normal would be rounding,
+// has its neighbour's.
 std::vector<glm::dvec3> normals_of(const Facets& facets);
 
 } // namespace vkfv::optics

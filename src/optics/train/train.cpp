@@ -32,7 +32,7 @@ void set_interface(Surface& surface, const Interfaces& interfaces, double layer_
     if (surface.index_before == surface.index_after || (surface.flags & SURFACE_IDEAL_LENS) != 0) {
         return;
     }
-    // A layer lies between a glass and air; two cemented glasses meet without one.
+    // A coating lies between a glass and air; two cemented glasses meet without one.
     const bool cemented = surface.index_before > 1 && surface.index_after > 1;
     if (interfaces.model == Interfaces::Model::quarter_wave && !cemented) {
         surface.flags |= SURFACE_LAYER;
@@ -121,7 +121,7 @@ PlacedSurface dummy_plane(const SpectralIndex& medium, const Pose& pose, std::st
 }
 
 void link(std::vector<PlacedSurface>& train, const Pose& entry) {
-    // Below this a transfer's rounding, which would make every train look displaced.
+    // Transfers that differ from the identity by less are rounding, which would make every train look displaced.
     constexpr double rounding = 1e-12;
     const auto snapped = [](double value, double to) { return std::abs(value - to) < rounding ? to : value; };
     const Pose* previous = &entry;
@@ -129,7 +129,7 @@ void link(std::vector<PlacedSurface>& train, const Pose& entry) {
         Surface& surface = placed.surface;
         const glm::dmat3 back = glm::transpose(previous->axes);
         const glm::dvec3 shift = back * (placed.pose.origin - previous->origin);
-        const glm::dmat3 rotation = glm::transpose(placed.pose.axes) * previous->axes; // column: old axis
+        const glm::dmat3 rotation = glm::transpose(placed.pose.axes) * previous->axes; // columns: old axes
         surface.decentre_x = snapped(shift.x, 0);
         surface.decentre_y = snapped(shift.y, 0);
         surface.distance = shift.z;
@@ -171,15 +171,15 @@ glm::dvec2 meeting_place(const Surface& surface, const physics::f64::TrainResult
     if ((surface.flags & physics::f64::SURFACE_IDEAL_LENS) == 0) {
         return glm::dvec2(behind.ray.position);
     }
-    // As a plane without power it is met at the same place.
+    // The ray is traced to the lens as a plane without power, which it meets at the same place.
     const std::uint32_t plane = present & ~physics::f64::FEATURE_IDEAL_LENS;
     return glm::dvec2(physics::f64::trace_surface(surface, 0, before, false, light, plane).ray.position);
 }
 
 namespace {
 
-// most_excess: excess_of(), of the edges that are met; none where nobody asks. In one function, so that the compiler
-// puts each surface's work into its loop.
+// most_excess: the largest excess_of() over the edges met; null if not wanted. One function serves both callers, so
+// that the compiler puts each surface's work into its loop.
 physics::f64::TrainResult go_through(std::span<const Surface> train, physics::f64::Ray ray, bool apertures,
                                      double spectral, double* most_excess) {
     const double index =
@@ -187,7 +187,7 @@ physics::f64::TrainResult go_through(std::span<const Surface> train, physics::f6
     ray.direction *= index;
     const physics::f64::Light light{.spectral = spectral, .wave_number = 1, .survival = 0};
     physics::f64::TrainResult result = physics::f64::enter_train(ray, index);
-    // Only what the surface has is computed; the other terms would change no bit.
+    // Only the features that the surface has are computed; the others would change no bit.
     for (std::size_t i = 0; i < train.size() && result.status == physics::f64::PATH_ALIVE; ++i) {
         const Surface& surface = train[i];
         const std::uint32_t present =

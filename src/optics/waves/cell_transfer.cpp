@@ -18,29 +18,30 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Points of a lattice across the pupil's half width that the mean over a cell is taken from, for each cell across it.
+// The number of lattice points across a cell, over which the cell's mean is taken.
 constexpr int points_a_cell = 10;
 constexpr int fewest_steps = 32;
-constexpr int most_wavelengths = 7; // of a continuous spectrum, whose mean changes slowly with its wavelengths
+constexpr int most_wavelengths = 7; // enough for the slowly varying mean of a continuous spectrum
 
-// What waves and what rays make of a cell, summed over its points.
+// Sums over the points of a cell of the wave-optical and the ray-optical transfer.
 struct Sums {
     Complex waves = 0;
     Complex rays = 0;
 };
 
-// What turns the rays' into the waves', as far as it does not amplify.
+// The factor that turns the ray-optical transfer into the wave-optical one, limited to the modulus 1 so that it does
+// not amplify noise.
 Complex ratio_of(const Sums& sums) {
     const double waves = std::abs(sums.waves);
     const double rays = std::abs(sums.rays);
     return waves == 0 ? 0 : std::polar(waves < rays ? waves / rays : 1.0, std::arg(sums.waves * std::conj(sums.rays)));
 }
 
-// interpolated() of all cells, of nodes that node(column, row) gives. A node that counts by rounding alone is not asked
-// for.
+// Evaluates interpolated() for all cells, from the nodes that node(column, row) returns. Nodes whose weight is rounding
+// only are not computed.
 template <class Node>
 std::vector<Complex> interpolated_cells(std::size_t cells, int steps, double x, double y, const Node& node) {
-    constexpr double rounding = 1e-9; // of the distance of nodes
+    constexpr double rounding = 1e-9; // in units of the nodes' distance
     std::vector<Complex> result(cells);
     if (y < 0 || (y == 0 && x < 0)) {
         result = interpolated_cells(cells, steps, -x, -y, node);
@@ -72,7 +73,7 @@ std::vector<Complex> interpolated_cells(std::size_t cells, int steps, double x, 
     return result;
 }
 
-// How the chief ray's slope at the detector grows with its position there, 1/mm: from the axis to the field's edge.
+// The chief ray's slope at the detector per position there (1/mm), between the axis and the field's edge.
 double chief_slope_per_position(const Instrument& instrument) {
     const Imaging imaging = imaging_of(instrument);
     const auto land = [&](glm::dvec2 field) {
@@ -86,11 +87,12 @@ double chief_slope_per_position(const Instrument& instrument) {
 
 } // namespace
 
-// One wavelength's pupil on a lattice whose points p + lambda f / 2 are points again, for frequencies that are
-// multiples of the cutoff over `half`. No point lies on an axis, where mirror images would share a cell's edge.
+// The pupil of one wavelength on a lattice whose points, shifted by lambda f / 2, are lattice points again for
+// frequencies f that are multiples of the cutoff over `half`. No point lies on an axis, where mirror images would share
+// a cell's edge.
 struct CellTransfer::Lattice {
-    // middle: the p that it lies about; slope: of its chief ray at the detector, less that of the chief ray that the
-    // light is sorted by.
+    // middle: the p at the lattice's centre; slope: that of its chief ray at the detector, minus that of the chief ray
+    // relative to which light is sorted into cells.
     Lattice(const Wavefront& wavefront, int half, const physics::f64::PupilCells& cells, glm::dvec2 middle,
             glm::dvec2 slope)
         : half(half), side(2 * half), spacing(wavefront.largest_rim() / half),
@@ -110,7 +112,7 @@ struct CellTransfer::Lattice {
     }
     std::size_t index(int i, int j) const { return static_cast<std::size_t>((j + half) * side + i + half); }
 
-    // What rays make of each point for a row of frequencies, one after the other.
+    // The ray-optical transfer of each point for a row of frequencies, advanced from one to the next.
     class Rays {
       public:
         Rays(const Lattice& lattice, int dx, int dy) : values_(lattice.tilt.size()), steps_(values_.size()) {
@@ -128,7 +130,7 @@ struct CellTransfer::Lattice {
         std::vector<Complex> steps_;
     };
 
-    // For the frequency (dx, dy) cutoff / half.
+    // Sums both transfers over each cell for the frequency (dx, dy) cutoff / half.
     template <class RaysOfPlaces>
     void add_up(int dx, int dy, const RaysOfPlaces& rays, std::vector<Sums>& sums) const {
         std::fill(sums.begin(), sums.end(), Sums());
@@ -153,7 +155,7 @@ struct CellTransfer::Lattice {
         }
     }
 
-    // Of a single frequency.
+    // The ray-optical transfer of each point for a single frequency.
     struct RaysThere {
         const Lattice& lattice;
         int dx;
@@ -252,9 +254,9 @@ void CellTransfer::find_nearest_lit() {
     const int side = static_cast<int>(cells_.side);
     const int count = static_cast<int>(shares_.size());
     const auto share = [&](int cell) { return shares_[static_cast<std::size_t>(cell)]; };
-    // From the pupil's middle, in cells.
+    // Distances are in cells from the pupil's middle.
     const auto middle = [side](int cell) { return glm::dvec2(cell % side, cell / side) - 0.5 * (side - 1); };
-    // Of cells that are equally near, the one nearer to an axis: mirror images have mirror images.
+    // Among equally near cells the order prefers the one nearer to an axis, so that mirror images stay mirror images.
     const auto order = [&](int lit, int dark) {
         return std::tuple(glm::length(middle(lit) - middle(dark)), std::abs(middle(lit).y), std::abs(middle(lit).x));
     };
@@ -291,7 +293,7 @@ std::vector<std::complex<float>> CellTransfer::table() const {
             }
         });
         const double ratio = cutoff_ * wavefront.wavelength() / (2 * wavefront.largest_rim());
-        std::vector<TablePlace> places; // of the table's nodes
+        std::vector<TablePlace> places; // places of the table's nodes in `own`
         for (int dy = 0; dy <= steps_; ++dy) {
             for (int dx = -steps_; dx <= steps_; ++dx) {
                 places.push_back(table_place(steps_, dx * ratio, dy * ratio));
@@ -315,7 +317,8 @@ std::vector<std::complex<float>> CellTransfer::table() const {
     return table;
 }
 
-// Of a round pupil one of eight mirror images is computed: a cell has there what its own mirror image has here.
+// For a round pupil only one of eight mirror images of a frequency is computed: a cell's value is that of its mirror
+// image at the mirrored frequency.
 const CellTransfer::CellValues& CellTransfer::node_of_wavelength(std::size_t wavelength, int dx, int dy) const {
     Nodes& nodes = *nodes_[wavelength];
     {

@@ -1,4 +1,4 @@
-// The transfer functions of the pupil's cells, at single frequencies: what a PupilFilter is a table of. An instrument's
+// The transfer functions of the pupil's cells at single frequencies. PupilFilter is a table of them; an instrument's
 // figures need a hundredth of that table.
 #pragma once
 
@@ -17,11 +17,11 @@
 
 namespace vkfv::optics {
 
-// A place in a table of transfer functions, whose nodes lie at -steps ... steps and whose rows at 0 ... steps: 0 beyond
-// them, and for rows below 0 the conjugate of the opposite.
+// A place in a table of transfer functions, with columns -steps ... steps and rows 0 ... steps. Beyond the table the
+// functions are 0; in rows below 0 they are the conjugate of the value at the opposite frequency.
 struct TablePlace {
-    std::ptrdiff_t node = 0; // at its lower left
-    double right = 0;        // of that node, 0 to 1
+    std::ptrdiff_t node = 0; // index of the node at the place's lower left
+    double right = 0;        // distance from that node in units of the spacing, 0 to 1
     double above = 0;
     bool inside = false;
     bool opposite = false;
@@ -44,7 +44,7 @@ inline TablePlace table_place(int steps, double x, double y) {
             .inside = true};
 }
 
-// The value there, bilinear between the nodes of one cell's table.
+// The value of one cell's table at a place, bilinear between nodes.
 template <class Value>
 std::complex<double> interpolated(const Value* values, int steps, const TablePlace& place) {
     using Complex = std::complex<double>;
@@ -59,22 +59,22 @@ std::complex<double> interpolated(const Value* values, int steps, const TablePla
     return place.opposite ? std::conj(value) : value;
 }
 
-// The wavefronts that the filters of an instrument are made of, its spectrum by a few wavelengths: of a point of the
-// field (mm in the object), the axis if none is given.
+// The wavefronts from which an instrument's filters are made, at a few wavelengths of its spectrum, for a point of the
+// field (mm in the object).
 std::vector<Wavefront> wavefronts_for_cells(const Instrument& instrument, glm::dvec2 field = glm::dvec2(0));
 
-// Nodes of a table of so many cells across the pupil, from 0 to the cutoff.
+// The number of steps from 0 to the cutoff in a table for so many cells across the pupil.
 int table_steps(int cells);
 
 class CellTransfer {
   public:
-    // Of so many cells across the pupil of the axis, for pixels that are not parted. Throws InputError where no light
-    // comes through.
+    // Divides the pupil of the axis into so many cells across, for pixels without parts. Throws InputError if no light
+    // passes.
     CellTransfer(const Instrument& instrument, int cells);
-    // Of these wavefronts, wavefronts_for_cells().
+    // Divides the pupil of the axis, with wavefronts that wavefronts_for_cells() has traced already.
     CellTransfer(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells);
-    // Has the same cells, frequencies and steps as on the axis, and the wavefronts of another point of the field, whose
-    // light passes: its pupil lies about its own chief ray.
+    // The transfer functions of another point of the field, from its wavefronts, which must pass light. Cells,
+    // frequencies and steps are those on the axis; the pupil is centred on the point's own chief ray.
     CellTransfer(const CellTransfer& axis, std::vector<Wavefront> wavefronts);
     ~CellTransfer();
     CellTransfer(CellTransfer&&) noexcept;
@@ -82,14 +82,15 @@ class CellTransfer {
 
     const physics::f64::PupilCells& cells() const { return cells_; }
     std::size_t cell_count() const { return shares_.size(); }
-    const std::vector<double>& shares() const { return shares_; } // of the light, of each cell
+    const std::vector<double>& shares() const { return shares_; } // share of the light in each cell
     double cutoff() const { return cutoff_; }                     // cycles per mm of the object plane
-    int steps() const { return steps_; }                          // nodes from 0 to the cutoff
+    int steps() const { return steps_; }                          // steps from 0 to the cutoff
 
-    // PupilFilter::table(), by all cores.
+    // Computes PupilFilter::table() on all cores.
     std::vector<std::complex<float>> table() const;
-    // The values that this table has at a frequency (cycles per mm), of each cell; but for rounding in the rare case
-    // that a value lies between two floats as nearly as double can tell. Nodes are kept; several threads may ask.
+    // The table's values at a frequency (cycles per mm), for each cell. They may differ from the table by rounding in
+    // the rare case that a value lies halfway between two floats within double's precision. Computed nodes are kept;
+    // several threads may call.
     std::vector<std::complex<double>> at(double fx, double fy) const;
 
   private:
@@ -103,17 +104,18 @@ class CellTransfer {
 
     struct Nodes {
         std::mutex mutex;
-        std::map<std::pair<int, int>, CellValues> values; // by (dx, dy), of one wavelength; they never move
+        // Values by (dx, dy), for one wavelength; references to them stay valid.
+        std::map<std::pair<int, int>, CellValues> values;
     };
 
     physics::f64::PupilCells cells_{};
     int steps_ = 0;
     double cutoff_ = 0;
-    bool round_ = false; // the pupil is its own mirror image about both axes and their bisectors
+    bool round_ = false; // the pupil is symmetric about both axes and their bisectors
     std::vector<Wavefront> wavefronts_;
-    std::vector<std::unique_ptr<Lattice>> lattices_; // of each
+    std::vector<std::unique_ptr<Lattice>> lattices_; // one for each wavefront
     std::vector<double> shares_;
-    std::vector<std::size_t> nearest_lit_; // of each cell: itself, or the cell whose values it has
+    std::vector<std::size_t> nearest_lit_; // for each cell: itself, or the cell whose values it takes
     std::vector<std::unique_ptr<Nodes>> nodes_;
 };
 

@@ -36,7 +36,7 @@ Diffraction::Diffraction(const Grid<float>& point_spread, double point_spread_pi
         }
     if (!(sum > 0) || !std::isfinite(sum))
         throw std::invalid_argument("diffraction: a point spread function with a positive sum");
-    // Each value's square of light is shared among the image's pixels that it covers.
+    // The light of each value, spread over its square, is divided among the image's pixels that the square overlaps.
     const double ratio = point_spread_pitch / pitch;
     const auto wrapped = [](int k, int count) { return ((k % count) + count) % count; };
     for (int row = 0; row < point_spread.rows; ++row)

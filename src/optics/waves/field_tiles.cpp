@@ -16,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// The point that stands for the place along a line, and how far it is on the way to the next one.
+// The tile before a place along a line, and the place's share of the distance to the next tile.
 std::pair<int, double> along(double place, double half, int across) {
     if (across == 1 || half == 0) {
         return {across / 2, 0};
@@ -26,7 +26,7 @@ std::pair<int, double> along(double place, double half, int across) {
     return {before, at - before};
 }
 
-// At the least variance over the pupil of the wavelength with most of the light.
+// The wavefronts at the height where the wavelength with most of the light has the least variance over the pupil.
 std::vector<Wavefront> sharpest(std::vector<Wavefront> wavefronts) {
     const auto brightest = std::ranges::max_element(wavefronts, {}, &Wavefront::weight);
     const double height = brightest->sharpest_height();
@@ -71,8 +71,8 @@ FieldTransfer::FieldTransfer(const Instrument& instrument, const CellTransfer& a
     : side_(static_cast<int>(axis.cells().side)), steps_(axis.steps()) {
     const bool symmetric = imaging_of(instrument).symmetric;
     const glm::dvec2 half = instrument.first_order.field_corner;
-    std::map<std::array<int, 2>, std::size_t> known; // by distances from the axis, in tiles
-    std::vector<int> computed;                       // tiles
+    std::map<std::array<int, 2>, std::size_t> known; // key: distances from the axis in tiles
+    std::vector<int> computed;                       // indices of tiles
     const int middle = tiles.across() / 2;
     for (int tile = 0; tile < tiles.count(); ++tile) {
         std::array<int, 2> place = {tile % tiles.across() - middle, tile / tiles.across() - middle};
@@ -93,7 +93,7 @@ FieldTransfer::FieldTransfer(const Instrument& instrument, const CellTransfer& a
             computed.push_back((place[1] + middle) * tiles.across() + place[0] + middle);
         }
     }
-    std::vector<std::future<std::unique_ptr<const CellTransfer>>> transfers; // of the points, side by side
+    std::vector<std::future<std::unique_ptr<const CellTransfer>>> transfers; // run in parallel
     for (const int tile : computed) {
         transfers.push_back(std::async(std::launch::async, [&, tile] {
             auto wavefronts = wavefronts_for_cells(instrument, tiles.point(tile));
@@ -108,7 +108,7 @@ FieldTransfer::FieldTransfer(const Instrument& instrument, const CellTransfer& a
     }
 }
 
-// The cell of the computed point that a cell of this one is the image of.
+// The cell of the computed point whose mirror image is the given cell of this point.
 int FieldTransfer::cell_there(const Image& image, int cell) const {
     int column = cell % side_;
     int row = cell / side_;

@@ -1,4 +1,4 @@
-// The filters of waves over the field: each of its own point, blended in between.
+// Wave filters over the field: tiles with a filter each, blended in between.
 #pragma once
 
 #include "optics/instrument/instrument.hpp"
@@ -11,25 +11,26 @@
 
 namespace vkfv::optics {
 
-// A square lattice of points of the field with a filter each, odd many across it, the outer ones on its border. Between
-// them the filters' images are blended bilinearly, so that weights are positive and add up to 1. One point: the axis.
+// A square lattice of field points with a filter each, an odd number across, the outer ones on the field's border.
+// Between the points the filters' images are blended bilinearly, so that weights are positive and sum to 1. A single
+// point lies on the axis.
 class FieldTiles {
   public:
     FieldTiles() = default;
-    // across: points along a side, odd.
+    // across: the number of points along a side, odd.
     FieldTiles(const Instrument& instrument, int across);
 
     int across() const { return across_; }
     int count() const { return across_ * across_; }
-    // Row after row, x first: mm in the object, inversion removed.
+    // The field point of a tile (mm in the object, inversion removed); tiles are numbered row by row, x first.
     glm::dvec2 point(int tile) const;
 
     struct Share {
         int tile;
         double weight;
     };
-    // The tiles that are blended at a point of the field (mm in the object), with their weights above 0. Beyond the
-    // field's border they are those of the border.
+    // The tiles that are blended at a point of the field (mm in the object), with their positive weights. Beyond the
+    // field's border the border's tiles serve.
     std::vector<Share> shares(glm::dvec2 field) const;
 
   private:
@@ -37,34 +38,34 @@ class FieldTiles {
     glm::dvec2 half_field_{0}; // mm in the object
 };
 
-// The transfer functions of the cells at every point of such a lattice, each of the wavefronts of its own point (for a
-// train with displaced parts without any symmetry taken for granted), in the plane where the light of that point is
-// sharpest: there the rays' own displacement is smallest, and they carry what other heights add. Of a symmetric train
-// the points that are mirror images of another are not computed.
+// The transfer functions of the pupil's cells at every tile of FieldTiles. Each comes from the wavefronts of its own
+// point, in the plane where that point's light is sharpest: there the rays' own displacement is smallest, and they
+// carry the defocus of other heights. In a symmetric train, points that are mirror images of others are not computed;
+// with displaced parts no symmetry is assumed.
 class FieldTransfer {
   public:
-    // axis: the cells, and what counts for a point that no light comes from.
+    // axis: gives the cells, and the transfer functions of points without light.
     FieldTransfer(const Instrument& instrument, const CellTransfer& axis, const FieldTiles& tiles);
 
-    // CellTransfer::at() of the tile's point.
+    // The transfer functions of a tile's cells at a frequency (cycles per mm), as CellTransfer::at().
     std::vector<std::complex<double>> at(int tile, double fx, double fy) const;
-    // CellTransfer::table() of all tiles, one after the other.
+    // CellTransfer::table() of all tiles, concatenated.
     std::vector<std::complex<float>> table() const;
 
   private:
-    // The mirroring that makes a point's pupil of one that is computed.
+    // The reflections that map a computed point's pupil to this point's.
     struct Image {
-        std::size_t of = 0;    // of computed_
-        bool swapped = false;  // x and y, first
-        bool mirrored = false; // left to right
-        bool upright = false;  // upside down
+        std::size_t of = 0;    // index into computed_
+        bool swapped = false;  // x and y exchanged, applied first
+        bool mirrored = false; // left and right exchanged
+        bool upright = false;  // top and bottom exchanged
     };
     int cell_there(const Image& image, int cell) const;
 
     int side_ = 0; // cells across the pupil
     int steps_ = 0;
     std::vector<std::unique_ptr<const CellTransfer>> computed_;
-    std::vector<Image> images_; // of each tile
+    std::vector<Image> images_; // one for each tile
 };
 
 } // namespace vkfv::optics

@@ -21,29 +21,29 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int half = 40;       // points of a lattice across half the pupil
-constexpr int frequencies = 7; // parts of the cutoff, and one more would be it
-constexpr int directions = 16; // over half a turn; the opposite ones are the conjugates
+constexpr int half = 40;       // lattice points across half the pupil
+constexpr int frequencies = 7; // tested frequencies: multiples of 1 / (frequencies + 1) of the cutoff
+constexpr int directions = 16; // over half a turn; opposite directions are conjugates
 constexpr int half_heights = 4;
 constexpr std::size_t heights = 2 * half_heights + 1;
 constexpr double depths_of_field = 2;
-constexpr int most_wavelengths_tried = 3; // of a continuous spectrum
+constexpr int most_wavelengths_tried = 3; // wavelengths for a continuous spectrum
 constexpr int fewest_cells = 8;
 constexpr int most_cells = 16;
 
-// Of each height.
+// A complex value at each height.
 using AtHeights = std::array<Complex, heights>;
 
 double height_of(std::size_t h, double reach) {
     return reach * (static_cast<double>(h) / half_heights - 1);
 }
 
-// Sums over points, at each height, of a number that turns by the same angle from one height to the next: by
-// v_(h+1) = 2 cos(angle) v_h - v_(h-1), half of the products of v_(h+1) = step v_h. In four sums side by side, as one
-// alone would wait for each addition.
+// Sums over points, at each height, of a number that rotates by the same angle from one height to the next: v_(h+1) = 2
+// cos(angle) v_h - v_(h-1) takes half of the products of v_(h+1) = step v_h. Four sums run in parallel, as a single one
+// would wait for each addition.
 class HeightSums {
   public:
-    // step: from one height to the next, of modulus 1.
+    // Adds a number by its value at the lowest height and the factor `step` of modulus 1 from one height to the next.
     void add(Complex lowest, Complex step) {
         const Complex second = product(lowest, step);
         real_[next_] = lowest.real();
@@ -104,10 +104,10 @@ class HeightSums {
     std::size_t next_ = 0;
 };
 
-// Powers 0 ... of a number of modulus 1; those below 0 are the conjugates.
+// The powers of a number of modulus 1, from exponent 0; negative exponents give the conjugates.
 class Powers {
   public:
-    static constexpr int most = half / (frequencies + 1) + 1; // from one frequency to the next
+    static constexpr int most = half / (frequencies + 1) + 1; // largest step between tested frequencies
 
     explicit Powers(double phase) {
         powers_[0] = 1;
@@ -125,14 +125,14 @@ class Powers {
     std::array<Complex, most + 1> powers_;
 };
 
-// Of something at the lowest height, and what leads from one height to the next.
+// A phase factor at the lowest height, and the factor from one height to the next.
 struct Phase {
     Complex lowest = 1;
     Complex step = 1;
 };
 
-// One wavelength's pupil on a lattice about the chief ray, whose points p + lambda f / 2 are points again for the
-// frequencies 2 unit (dx, dy), at heights within `reach` (mm).
+// The pupil of one wavelength on a lattice about the chief ray whose points, shifted by lambda f / 2, are lattice
+// points again for the frequencies 2 unit (dx, dy), at heights within `reach` (mm).
 class PupilLattice {
   public:
     PupilLattice(const Wavefront& wavefront, const physics::f64::PupilCells& cells, double unit, double reach)
@@ -158,13 +158,13 @@ class PupilLattice {
         for (const auto& points : rows) {
             count += points.size();
         }
-        points_.reserve(count); // growing would touch several times the memory, which takes longer than to fill it
+        points_.reserve(count); // without it, growing would touch several times the memory, slower than the computation
         for (const auto& points : rows) {
             points_.insert(points_.end(), points.begin(), points.end());
         }
     }
 
-    // Hopkins' transfer function.
+    // Hopkins' transfer function at each height.
     AtHeights waves(int dx, int dy) const {
         HeightSums sums;
         const int reach_x = half_ - std::abs(dx);
@@ -184,8 +184,8 @@ class PupilLattice {
         return mean(sums.all());
     }
 
-    // exp(-2 pi i f . t) of each point at the lowest height, and what leads from one height to the next, for
-    // frequencies that follow each other closely: three quarters of the time went into sines and cosines.
+    // exp(-2 pi i f . t) of each point at the lowest height, and its factor from one height to the next. Neighbouring
+    // frequencies are reached by products, as sines and cosines took three quarters of the time.
     class Rays {
       public:
         explicit Rays(const PupilLattice& lattice) : lattice_(lattice), phases_(lattice.points_.size()) {}
@@ -203,7 +203,7 @@ class PupilLattice {
             dy_ = dy;
         }
 
-        // The cells' images as rays make them, each by its filter.
+        // The ray-optical images of all cells, each multiplied by its filter's transfer function, at each height.
         AtHeights filtered(const std::vector<Complex>& of_cell) const {
             HeightSums sums;
             for (std::size_t k = 0; k < phases_.size(); ++k) {
@@ -216,13 +216,13 @@ class PupilLattice {
         const PupilLattice& lattice_;
         int dx_ = 0;
         int dy_ = 0;
-        std::vector<Phase> phases_; // of each point
+        std::vector<Phase> phases_; // one for each point
     };
 
   private:
     struct Point {
         std::uint32_t cell;
-        std::array<Powers, 2> lowest; // of a unit of frequency along x and along y
+        std::array<Powers, 2> lowest; // powers for a step of frequency along x and along y
         std::array<Powers, 2> step;
     };
 
@@ -254,11 +254,11 @@ class PupilLattice {
     int side_;
     std::vector<char> passes_;
     std::vector<Phase> wave_;
-    std::vector<Point> points_; // those that pass
+    std::vector<Point> points_; // points that pass
 };
 
-// Directions without those that are mirror images of others: about the axis each has eight, about a point of the x axis
-// of a symmetric instrument two. Opposite ones are conjugates.
+// The number of directions that are not mirror images of others: on the axis of a symmetric instrument one in eight, at
+// a point of its x axis one in two. Opposite directions are conjugates and not counted.
 int directions_of(const PointWaves& point) {
     const auto& wavefronts = point.wavefronts();
     return std::ranges::all_of(wavefronts, &Wavefront::round)      ? directions / 4 + 1
@@ -351,13 +351,14 @@ PointWaves point_for_filter(const Instrument& instrument, glm::dvec2 field) {
 
 namespace {
 
-// Makes filters of an instrument, and finds how good they are.
+// Searches the cheapest sufficient filter of an instrument, by its contrast errors.
 class FilterSearch {
   public:
     explicit FilterSearch(const Instrument& instrument)
         : instrument_(instrument), reach_(reach_of_filter(instrument)), wavefronts_(wavefronts_for_cells(instrument)) {}
 
-    // The filter with the fewest cells, at least so many, that leave no more than this error on the axis.
+    // The filter with the fewest cells, at least `fewest`, whose error on the axis is at most `most_error`; with
+    // most_cells if none is.
     PupilFilter with_cells(int fewest, double most_error) {
         for (int cells = fewest;; cells += 2) {
             PupilFilter filter = PupilFilter::unparted(instrument_, wavefronts_, cells);
@@ -369,7 +370,7 @@ class FilterSearch {
     }
     PupilFilter with_given_cells(int cells) const { return PupilFilter::unparted(instrument_, wavefronts_, cells); }
 
-    // Whether neither the edge nor the corner is worse than this; what was found is kept in the filter.
+    // True if the errors at the edge and in the corner are at most `most_error`; they are stored in the filter.
     bool is_good(PupilFilter& filter, double most_error) {
         know({edge_of(instrument_), instrument_.first_order.field_corner});
         auto errors = filter.known_errors();
@@ -379,7 +380,8 @@ class FilterSearch {
         return std::max(errors.edge->difference, errors.corner->difference) <= most_error;
     }
 
-    // Whether the filter of the axis is enough for the field: what few cells leave on the axis no tiles mend.
+    // True if the axis' filter suffices for the whole field. Tiles cannot reduce the error that few cells leave on the
+    // axis.
     bool is_enough(PupilFilter& filter) {
         constexpr double more_than_on_axis = 1.5;
         auto errors = filter.known_errors();
@@ -390,7 +392,7 @@ class FilterSearch {
 
     struct Tiled {
         PupilFilter filter;
-        double worst; // on the axis, at the edge, in the corner and between tiles
+        double worst; // largest error on the axis, at the edge, in the corner and between tiles
     };
     Tiled with_tiles(const PupilFilter& axis, int tiles) {
         PupilFilter filter = axis.tiled(instrument_, tiles);
@@ -407,7 +409,7 @@ class FilterSearch {
         return {.filter = std::move(filter), .worst = worst};
     }
 
-    // The fewest tiles that are good enough; fewer where the next leave hardly less.
+    // The fewest tiles of sufficiently small error; fewer still if the next number hardly reduces it.
     Tiled with_fewest_tiles(const PupilFilter& axis) {
         constexpr int most_tiles = 9;
         Tiled best = with_tiles(axis, 3);
@@ -421,7 +423,7 @@ class FilterSearch {
         return best;
     }
 
-    // Takes the same number of tiles with more cells, as long as these are not good enough and the next leave less.
+    // Adds cells at the same number of tiles, while the error is too large and more cells reduce it.
     Tiled with_more_cells(Tiled best) {
         const int tiles = best.filter.tiles().across();
         for (int cells = static_cast<int>(best.filter.cells().side) + 2;
@@ -444,7 +446,7 @@ class FilterSearch {
         }
         return largest_filter_error(filter, *axis_, reach_);
     }
-    // Traces the wavefronts of these points, side by side.
+    // Traces the wavefronts of these points in parallel, unless they are known.
     void know(const std::vector<glm::dvec2>& fields) {
         std::vector<std::future<Point>> traced;
         for (const glm::dvec2 field : fields) {
@@ -462,12 +464,12 @@ class FilterSearch {
         return largest_filter_error(filter, std::ranges::find(points_, field, &Point::field)->waves, reach_);
     }
 
-    // The middles between four tiles in the corners and at the edges of the field; a symmetric train's quarters are
-    // alike.
+    // Field points midway between four tiles, in the corners and at the edges of the field; the quarters of a symmetric
+    // train are equivalent.
     std::vector<glm::dvec2> between_tiles(int tiles) const {
         const glm::dvec2 half = instrument_.first_order.field_corner;
-        const double outer = 1 - 1.0 / (tiles - 1); // of the half field
-        const double inner = 1.0 / (tiles - 1);     // next to the axis
+        const double outer = 1 - 1.0 / (tiles - 1); // in units of the half field
+        const double inner = 1.0 / (tiles - 1);     // nearest to the axis
         std::vector<glm::dvec2> points = {half * outer, half * glm::dvec2(outer, inner)};
         if (imaging_of(instrument_).symmetric) {
             if (half.x != half.y) {
@@ -501,7 +503,7 @@ class FilterSearch {
 } // namespace
 
 PupilFilter filter_for_waves(const Instrument& instrument, const WaveOptions& options) {
-    constexpr double share_of_cells = 0.8; // of the error that tiles may leave
+    constexpr double share_of_cells = 0.8; // cells may use this share of the error allowed with tiles
     FilterSearch search(instrument);
     PupilFilter filter = options.cells > 0 ? search.with_given_cells(options.cells)
                                            : search.with_cells(fewest_cells, most_error_of_cells);

@@ -1,4 +1,4 @@
-// How far the contrast of images as optics::PupilFilter makes them is from that of waves, anywhere in the field.
+// The contrast error of images made by optics::PupilFilter, anywhere in the field.
 #pragma once
 
 #include "optics/waves/point_waves.hpp"
@@ -6,30 +6,32 @@
 
 namespace vkfv::optics {
 
-// The largest over directions, frequencies up to the filter's cutoff and heights within `reach` (mm) of z = 0, for a
-// Lambertian surface that stands level. All of the point's own counts: wavefront, pupil, vignetting, lateral colour.
-// A point that no light comes from has none.
+// The largest contrast error over directions, frequencies below the filter's cutoff and heights within `reach` (mm) of
+// z = 0, for a level Lambertian surface. It includes all properties of the point: wavefront, pupil, vignetting, lateral
+// colour. 0 at a point without light.
 FilterError largest_filter_error(const PupilFilter& filter, const PointWaves& point, double reach);
-// The wavelengths of a point of the field (mm in the object) that this is found with.
+// The wavefronts of a point of the field (mm in the object) at the wavelengths used to find the contrast error.
 PointWaves point_for_filter(const Instrument& instrument, glm::dvec2 field);
-double reach_of_filter(const Instrument& instrument); // two depths of field, mm
+double reach_of_filter(const Instrument& instrument); // mm, two depths of field
 // The middle of a side of the field, mm in the object.
 glm::dvec2 edge_of(const Instrument& instrument);
-// The same of a point of the instrument's field (mm in the object), within that.
+// The contrast error at a point of the instrument's field (mm in the object) within reach_of_filter(); known errors of
+// the filter are reused.
 FilterError largest_filter_error(const PupilFilter& filter, const Instrument& instrument, glm::dvec2 field);
 
-// What the cells may leave of that on the axis where their number is not asked for.
+// The contrast error on the axis that an automatic number of cells may leave.
 inline constexpr double most_error_of_cells = 0.07;
-// The filter of the axis may leave so much error at the edge and in the corner of the field where the number of tiles
-// is not asked for. Where it leaves more, tiles are to leave no more than most_error_of_tiles.
+// The contrast error at the edge and in the corner of the field up to which an automatic number of tiles is 1. Above
+// it, tiles are to leave at most most_error_of_tiles.
 inline constexpr double most_error_of_axis = 0.12;
 inline constexpr double most_error_of_tiles = 0.05;
-// A filter with the cells and tiles that are asked for, of pixels that are not parted. If cells are not: with the
-// fewest of 8, 10 ... 16 across the pupil that leave no more than that on the axis, or 16. If tiles are not: one where
-// the axis' filter is good enough, or not half as far off again as on the axis; else the fewest of 3, 5, 7 and 9 across
-// the field that leave no more than most_error_of_tiles on the axis, at the edge, in the corner and between tiles.
-// Cells that are not asked for are then as many as leave four fifths of that on the axis, and more where the tiles are
-// not good enough. More of either are not taken where they are hardly better. Throws as PupilFilter.
+// The filter of an instrument with the options' cells and tiles, for pixels without parts. An automatic number of cells
+// is the smallest of 8, 10 ... 16 across the pupil with at most most_error_of_cells on the axis, else 16. An automatic
+// number of tiles is 1 if the axis' filter leaves at most most_error_of_axis, or at most one and a half times its error
+// on the axis; else the smallest of 3, 5, 7 and 9 across the field with at most most_error_of_tiles on the axis, at the
+// edge, in the corner and between tiles. An automatic number of cells then leaves at most four fifths of that on the
+// axis, and grows while the tiles' error is too large. Neither number grows where the error hardly falls. Throws
+// InputError as PupilFilter does.
 PupilFilter filter_for_waves(const Instrument& instrument, const WaveOptions& options = {});
 
 } // namespace vkfv::optics

@@ -22,7 +22,7 @@ LevelledWavefront levelled(const Wavefront& wavefront) {
     double area = 0;
     double mean_path = 0;
     glm::dvec2 middle(0);
-    const auto nodes = gauss_legendre(rings, 0, 1); // in the square of the radius over the rim's
+    const auto nodes = gauss_legendre(rings, 0, 1); // in the squared relative radius
     for (int spoke = 0; spoke < spokes; ++spoke) {
         const double azimuth = 2 * pi * spoke / spokes;
         const double rim = wavefront.rim(azimuth);

@@ -39,7 +39,7 @@ double PointSpread::strehl() const {
 }
 
 double PointSpread::around(double radius) const {
-    constexpr int azimuths = 16; // what a wavefront's coma and astigmatism make
+    constexpr int azimuths = 16; // enough for a wavefront's coma and astigmatism
     double sum = 0;
     for (int i = 0; i < azimuths; ++i) {
         sum += value(radius * direction_of(2 * pi * (i + 0.5) / azimuths)) / azimuths;
@@ -48,7 +48,8 @@ double PointSpread::around(double radius) const {
 }
 
 std::vector<double> PointSpread::dark_rings(int count) const {
-    // A step is a 24th of the rings' distance; between neighbours of the least value a golden section.
+    // The search steps by a 24th of the rings' distance; between the neighbours of a minimum follows a golden-section
+    // search.
     const double step = ring_distance() / 24;
     std::vector<double> rings;
     double before = around(0);
@@ -85,7 +86,7 @@ double PointSpread::ring_distance() const {
 }
 
 std::vector<double> PointSpread::encircled(std::span<const double> radii) const {
-    constexpr int fewest = 8; // nodes of each part, and as many per ring
+    constexpr int fewest = 8; // nodes in each interval, plus as many per ring
     std::vector<double> light;
     double sum = 0;
     double before = 0;

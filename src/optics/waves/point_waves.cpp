@@ -11,7 +11,7 @@ namespace vkfv::optics {
 
 namespace {
 
-// A pupil's area in pieces.
+// A piece of a pupil's area.
 struct Piece {
     glm::dvec2 p = glm::dvec2(0);
     double area = 0;
@@ -31,7 +31,7 @@ std::vector<Piece> pieces_of(const Wavefront& wavefront, int rings, int spokes) 
     return pieces;
 }
 
-// The shift a with the least variance of W - p . (a - aside) over pupil and spectrum, in wavelengths.
+// The shift a with the least variance of W - p . (a - aside), in wavelengths, over pupil and spectrum.
 glm::dvec2 centre_of(const PointWaves& image) {
     glm::dmat2 normal(0);
     glm::dvec2 right(0);
@@ -109,7 +109,8 @@ PointSpread PointWaves::point_spread(double reach) const {
     std::vector<PointSpread::Pupil> pupils;
     for (const Wavefront& wavefront : wavefronts_) {
         const double wave_number = 2 * pi / wavefront.wavelength();
-        // A phase of x rad along a radius takes x / 2 nodes and some more, round the pupil 2 x.
+        // A phase of x rad along a radius needs x / 2 nodes plus a few, a turn about the pupil 2 x; the factors leave a
+        // margin.
         const glm::dvec2 from = centre - aside(wavefront);
         const double phase = wave_number * ((reach + glm::length(from)) * wavefront.largest_rim() + wavefront.range());
         const int rings = 16 + static_cast<int>(0.6 * phase);

@@ -133,7 +133,7 @@ double PupilFilter::folded_contrast() const {
     const auto folded = [sampling](double f) { return f - sampling * std::round(f / sampling); };
     const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(pi * x) / (pi * x); };
     if (const double highest = cutoff() * (samples - 1) / samples; folded(highest) == highest) {
-        return 0; // without the table, which takes far longer
+        return 0; // avoids the table, which takes far longer
     }
     const TileTransfers transfers = tile_transfers(middle_tile());
     double largest = 0;
@@ -157,10 +157,11 @@ double PupilFilter::folded_contrast() const {
 }
 
 double PupilFilter::noise_of_pixels() const {
-    // White noise on the parts of pixels, filtered and added up over what is sensitive; before, over the whole pixel.
-    constexpr int samples = 48; // of half the band
+    // Noise is white over the parts of pixels. After the filter it is summed over the sensitive parts; before, over the
+    // whole pixel.
+    constexpr int samples = 48; // over half the band
     const int parts = static_cast<int>(cells_.parts);
-    const auto added_up = [&](double f, bool all) { // cycles per part
+    const auto added_up = [&](double f, bool all) { // f: cycles per part
         Complex sum = 0;
         for (int part = 0; part < parts; ++part) {
             const double share = all ? 1 : physics::f64::sensitive_share(cells_, static_cast<std::uint32_t>(part));

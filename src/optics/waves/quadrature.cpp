@@ -11,14 +11,14 @@ namespace vkfv::optics {
 
 namespace {
 
-// A node of the rule over [-1, 1], whose weight is 2 / divisor.
+// A node of the rule over [-1, 1]; its weight is 2 / divisor.
 struct UnitNode {
     double place = 0;
     double divisor = 0;
 };
 
-// The roots of Legendre's polynomial by Newton's method, which converges from this guess (Abramowitz and Stegun,
-// section 22.16.6); weights 2 / ((1 - x^2) P'(x)^2) (25.4.29).
+// The roots of Legendre's polynomial by Newton's method, which converges from the initial values of Abramowitz and
+// Stegun, section 22.16.6; the weights are 2 / ((1 - x^2) P'(x)^2) (25.4.29).
 std::vector<UnitNode> unit_nodes(int count) {
     std::vector<UnitNode> nodes;
     for (int k = 0; k < count; ++k) {
@@ -42,8 +42,8 @@ std::vector<UnitNode> unit_nodes(int count) {
     return nodes;
 }
 
-// The rules of few nodes are kept, because an aberrated pupil asks for the same rule ten thousand times. They take at
-// most 2 MB.
+// Rules of few nodes are cached, because an aberrated pupil needs the same rule ten thousand times. They take at most 2
+// MB.
 std::shared_ptr<const std::vector<UnitNode>> kept_unit_nodes(int count) {
     constexpr int most_kept = 512;
     if (count > most_kept) {

@@ -1,4 +1,4 @@
-// Gauss and Legendre's rule.
+// Gauss-Legendre quadrature.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ struct QuadratureNode {
     double weight = 0;
 };
 
-// Over [from, to]; exact for polynomials of degree 2 count - 1.
+// Nodes and weights over [from, to]; the rule is exact for polynomials of degree 2 count - 1.
 std::vector<QuadratureNode> gauss_legendre(int count, double from = -1, double to = 1);
 
 } // namespace vkfv::optics

@@ -16,7 +16,8 @@ struct Chord {
     double length() const { return to - from; }
 };
 
-// A pupil about its chief ray, cut along one direction: what lies at one distance across it.
+// A pupil about its chief ray, cut into chords parallel to one direction: at() is the chord at a given distance across
+// it.
 class Chords {
   public:
     Chords(const Wavefront& wavefront, double along) : wavefront_(wavefront), along_(along) {
@@ -56,11 +57,11 @@ class Chords {
     const Wavefront& wavefront_;
     double along_;
     bool round_ = false;
-    double highest_ = pi / 2; // angles from `along`
+    double highest_ = pi / 2; // angle of the highest rim, from `along`
     double lowest_ = -pi / 2;
 };
 
-// How far from the middle of the overlap it reaches in this direction of heights.
+// The farthest height between `inside` and `outside` at which the pupil and its copy shifted by `shift` overlap.
 double reach_of_overlap(const Chords& chords, double shift, double inside, double outside) {
     if (chords.at(outside).length() >= shift) {
         return outside;
@@ -83,7 +84,7 @@ std::complex<double> transfer(const Wavefront& wavefront, glm::dvec2 frequency) 
     const glm::dvec2 across(-along.y, along.x);
     const double shift = wavefront.wavelength() * length;
     const Chords chords(wavefront, std::atan2(along.y, along.x));
-    // The widest chord lies in the overlap, if any does.
+    // If pupils overlap at all, they do so at the widest chord.
     constexpr int heights = 64;
     double widest = 0.5 * (chords.bottom() + chords.top());
     for (int i = 1; i < heights; ++i) {
@@ -95,14 +96,14 @@ std::complex<double> transfer(const Wavefront& wavefront, glm::dvec2 frequency) 
     }
     const double top = reach_of_overlap(chords, shift, widest, chords.top());
     const double bottom = reach_of_overlap(chords, shift, widest, chords.bottom());
-    // Nodes that resolve the phase, whose range is at most twice W's; from there on Gauss's rule converges fast.
+    // The nodes resolve the phase, whose range is at most twice that of W; with this number Gauss' rule converges fast.
     constexpr int fewest = 16;
     const int count = std::min(400, fewest + static_cast<int>(7 * wavefront.range() / wavefront.wavelength()));
     const auto nodes = gauss_legendre(count);
     const double wave_number = 2 * pi / wavefront.wavelength();
     std::complex<double> sum = 0;
     for (const QuadratureNode& row : nodes) {
-        // In the sine of an angle, which takes the square root out of a round pupil's ends.
+        // The substitution by the sine of an angle removes the square root at a round pupil's ends.
         const double half = 0.5 * (top - bottom);
         const double height = 0.5 * (top + bottom) + half * std::sin(0.5 * pi * row.place);
         const double row_weight = row.weight * 0.5 * pi * half * std::cos(0.5 * pi * row.place);

@@ -1,5 +1,6 @@
-// The transfer function of waves of one wavelength, integrated over the traced pupil: no transforms, no cells.
-// Incoherent light, scalar waves, a pupil of even radiance in direction cosines (a Lambertian specimen's).
+// The wave-optical transfer function at one wavelength, integrated over the traced pupil, without Fourier transforms or
+// pupil cells. It holds for incoherent light, scalar waves, and a pupil of uniform radiance in direction cosines (a
+// Lambertian specimen's).
 #pragma once
 
 #include "optics/waves/wavefront.hpp"
@@ -8,9 +9,10 @@
 
 namespace vkfv::optics {
 
-// H. H. Hopkins, Proc. Roy. Soc. A 231 (1955) 91, at a frequency in cycles per mm of the object; A: the pupil's area:
+// Hopkins' transfer function (Proc. Roy. Soc. A 231 (1955) 91) at a frequency in cycles per mm of the object, with the
+// pupil's area A:
 //   H(f) = (1 / A) integral of exp(-i k (W(p + lambda f / 2) - W(p - lambda f / 2))) over the p of which both pass.
-// H(f) is the integral of the point spread times exp(-2 pi i f . x), 1 at 0. Pupils are taken for convex.
+// H(f) is the integral of the point spread times exp(-2 pi i f . x), 1 at 0. Pupils are assumed convex.
 std::complex<double> transfer(const Wavefront& wavefront, glm::dvec2 frequency);
 
 } // namespace vkfv::optics

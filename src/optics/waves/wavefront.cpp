@@ -21,7 +21,7 @@ double axial(double index, glm::dvec2 p) {
     return std::sqrt(std::max(0.0, index * index - glm::dot(p, p)));
 }
 
-// The centroid of what passes, where that passes itself.
+// The centroid of the light that passes; none if a ray there does not pass.
 std::optional<glm::dvec2> middle_of_light(const DetectorView& view) {
     constexpr int steps = 32; // from the axis to the largest direction cosine
     glm::dvec2 sum(0);
@@ -55,7 +55,7 @@ double slope_of_horner(const std::vector<double>& coefficients, double at) {
     return sum;
 }
 
-// The factor of Wavefront::defocus() that leaves the least variance.
+// The factor of Wavefront::defocus() that, when subtracted, leaves the least variance.
 double defocus_of(const std::vector<double>& path, const std::vector<double>& defocus,
                   const std::vector<double>& weights) {
     const auto weight = [&](std::size_t i) { return weights.empty() ? 1.0 : weights[i]; };
@@ -104,7 +104,7 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
                       .guess = field};
     const auto chief = view.trace(chief_, 0);
     object_point_ = view.guess = chief ? chief->object_point : field;
-    // About the axis, and about a point of the x axis, a symmetric train's pupil has its symmetry.
+    // A symmetric train's pupil is round on the axis, and mirror symmetric at a point of the x axis.
     round_ = imaging.symmetric && field == glm::dvec2(0);
     mirrored_ = imaging.symmetric;
     if (!view.trace(chief_, 1)) {
@@ -114,21 +114,22 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
             object_point_ = view.trace(chief_, 0)->object_point;
         }
     }
-    // Images depend on the rim on the axis, to the last bit; in the field 5e-10 of the way is enough.
+    // Images depend on the last bit of the rim on the axis; in the field a relative 5e-10 of the search range is
+    // enough.
     const int bisections = field == glm::dvec2(0) ? 45 : 26;
     const auto rim_at = [&](int azimuth, double limit) {
         const glm::dvec2 direction = direction_of(2 * pi * azimuth / static_cast<double>(azimuths));
         const auto excess = [&](double radius) { return view.excess(chief_ + radius * direction); };
         const double all = index_ + glm::length(chief_);
-        if (limit < all) { // light that passes there may pass beyond
+        if (limit < all) { // the limit may lie inside the region that passes
             if (const auto near = farthest(limit, excess, bisections); near && *near < limit) {
                 return *near;
             }
         }
         return farthest(all, excess, bisections).value_or(0);
     };
-    // Of most pupils the rims are alike, and the first tells where to look for the others; those further out are found
-    // all the same, in more steps.
+    // Most pupils have similar rims, so the first one limits the search for the others; rims further out are also
+    // found, in more steps.
     constexpr double further_out = 1.25;
     const double first_rim = rim_at(0, index_ + glm::length(chief_));
     const auto other_rims = parallel_list(round_      ? 0
@@ -153,14 +154,14 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
 struct Wavefront::Samples {
     std::vector<glm::dvec2> places; // in the unit disc
     std::vector<double> defocus;
-    std::vector<double> weights{}; // none: all alike
-    std::vector<double> path{};    // W
+    std::vector<double> weights{}; // empty: equal weights
+    std::vector<double> path{};    // W, mm
     std::vector<double> slope_x{};
     std::vector<double> slope_y{};
 };
 
-// Rays that fill the pupil, dense towards its rim as a fit wants them. Of a pupil that is its own mirror image those of
-// one half count twice; of a round one those of the x axis are enough.
+// Rays that fill the pupil, denser towards its rim as the fit needs them. In a mirror-symmetric pupil the rays of one
+// half count twice; in a round pupil rays on the x axis are enough.
 Wavefront::Samples Wavefront::sample(const DetectorView& view, int rings, int spokes, double turn) const {
     Samples samples;
     const auto chief = view.trace(chief_, 0);
@@ -175,7 +176,7 @@ Wavefront::Samples Wavefront::sample(const DetectorView& view, int rings, int sp
             break;
         }
         const double azimuth = 2 * pi * place / spokes;
-        // Within the rim, which is known at some azimuths and drawn straight between them.
+        // The factor keeps the ray within the rim, which is interpolated linearly between azimuths.
         const double rim = (1 - 1e-9) * own_rim(azimuth);
         for (int ring = 0; ring < rings; ++ring) {
             const glm::dvec2 p = chief_ + rim * std::cos(pi * ring / (2.0 * rings)) * direction_of(azimuth);
@@ -231,12 +232,12 @@ void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnific
             slope_x_ = std::move(even[1]);
             slope_y_ = std::move(odd[0]);
         }
-        // They are 0 by definition: piston and tilt.
+        // Piston and tilt are 0 by definition.
         const auto coefficients = path_.coefficients();
         coefficients[0] = coefficients[1] = coefficients[static_cast<std::size_t>(degree) + 1] = 0;
-        // Other rays tell whether that is enough.
+        // Rays that were not fitted test whether the degree suffices.
         constexpr double enough = 1e-6;       // wavelengths
-        constexpr double enough_slope = 5e-6; // of the largest
+        constexpr double enough_slope = 5e-6; // relative to the largest slope
         const Samples others = sample(view, degree / 2 + 1, 2 * degree + 1, 0.5);
         double path_error = 0;
         double slope_error = 0;
@@ -254,7 +255,7 @@ void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnific
             break;
         }
     }
-    // (x^2 + y^2)^k has x^(2 k).
+    // The coefficient of (x^2 + y^2)^k is that of x^(2 k).
     for (std::size_t k = 0; 2 * k < path_.along_x().size(); ++k) {
         round_path_.push_back(path_.along_x()[2 * k]);
     }
@@ -287,7 +288,7 @@ bool Wavefront::passes(glm::dvec2 p) const {
     if (square > largest_rim_ * largest_rim_) {
         return false;
     }
-    // Straight lines between the rims may come this much nearer; most of the pupil needs no more.
+    // Most points lie within the smallest rim and need no interpolation.
     if (square <= smallest_rim_ * smallest_rim_) {
         return true;
     }
@@ -298,7 +299,7 @@ bool Wavefront::passes(glm::dvec2 p) const {
 double Wavefront::area() const {
     double sum = 0;
     for (std::size_t i = 0; i < azimuths; ++i) {
-        // Of the square of a radius that is linear in the azimuth.
+        // The mean of the square of a radius that is linear in the azimuth.
         const double a = rims_[i];
         const double b = rims_[(i + 1) % azimuths];
         sum += (a * a + a * b + b * b) / 3;

@@ -1,12 +1,12 @@
 // The wavefront of the imaging train, traced in double. Lengths in mm.
 //
-// All of it is in the object space. p = (px, py): direction cosines times the index n of the specimen's medium, of
-// light that leaves the specimen, axes of the specimen frame. For one point of the detector the light of every p comes
-// from a point x(p) of the object plane; with V(p) the optical path from there, Hamilton's mixed characteristic V + p .
-// x has the gradient x (Born and Wolf, "Principles of Optics", section 4.1). So
+// All quantities belong to the object space. p = (px, py) are the direction cosines of light that leaves the specimen
+// times the index n of the specimen's medium, in the axes of the specimen frame. For one point of the detector the
+// light of every p comes from a point x(p) of the object plane; with V(p) the optical path from there, Hamilton's mixed
+// characteristic V + p . x has the gradient x (Born and Wolf, "Principles of Optics", section 4.1). So
 //   W(p) = V_c - V - p . (x - x_c),   grad W = t(p) = x_c - x(p),   c: the chief ray.
-// t is where the light of a common object point lands, in the object, inversion removed. An amplitude point spread is
-// the integral of exp(i k (W(p) - p . x)) over the pupil.
+// t is the landing place of light from a common object point, in the object, inversion removed. An amplitude point
+// spread is the integral of exp(i k (W(p) - p . x)) over the pupil.
 #pragma once
 
 #include "core/mathematics/plane_polynomial.hpp"
@@ -20,61 +20,63 @@ namespace vkfv::optics {
 
 struct DetectorView;
 
-// Rad from the x axis.
+// The unit vector at an azimuth in rad from the x axis.
 inline glm::dvec2 direction_of(double azimuth) {
     return {std::cos(azimuth), std::sin(azimuth)};
 }
 
-// Of one wavelength and one point of the detector. A pupil that no light passes has the rim 0 and no wavefront.
+// The wavefront of one wavelength and one point of the detector. A pupil that no light passes has the rim 0 and no
+// wavefront.
 class Wavefront {
   public:
     // field: mm in the object; the point of the detector is its paraxial image, on the axis the detector's middle.
-    // height: of the object plane above best focus on the axis (z = 0 of a scan).
+    // height: mm, of the object plane above best focus on the axis (z = 0 of a scan).
     Wavefront(const Instrument& instrument, const SpectralNode& wavelength, glm::dvec2 field = glm::dvec2(0),
               double height = 0);
-    // The plane of best focus stands `focus` above the paraxial object plane.
+    // Traces the wavefront with the plane of best focus `focus` (mm) above the paraxial object plane.
     Wavefront(const Imaging& imaging, double magnification, double focus, const SpectralNode& wavelength,
               glm::dvec2 field = glm::dvec2(0), double height = 0);
 
-    // The same light, of another object plane: raised by z (mm) it adds z sqrt(n^2 - p^2), Debye's defocus.
+    // The wavefront for another object plane: a plane higher by z (mm) adds z sqrt(n^2 - p^2), Debye's defocus.
     Wavefront at_height(double height) const;
 
     double wavelength() const { return wavelength_; } // mm, in vacuum
-    double weight() const { return weight_; }         // the wavelength's share of the flux
-    double index() const { return index_; }           // of the specimen's medium
-    double height() const { return height_; }         // of the object plane
-    // The height of the object plane with the least variance of W over the pupil's rays, mm above z = 0.
+    double weight() const { return weight_; }         // wavelength's share of the flux
+    double index() const { return index_; }           // refractive index of the specimen's medium
+    double height() const { return height_; }         // mm, height of the object plane
+    // The height of the object plane (mm above z = 0) with the least variance of W over the pupil's rays.
     double sharpest_height() const { return -defocus_; }
-    // p of the paraxial chief ray; if it is stopped, of the light's middle.
+    // p of the paraxial chief ray; if that is stopped, p of the centroid of the light.
     glm::dvec2 chief() const { return turned(chief_); }
-    glm::dvec2 object_point() const; // x of the chief ray
+    glm::dvec2 object_point() const; // x of the chief ray, mm
 
-    // The largest |p - chief| that passes all apertures in that direction (rad from x); continuous. Pupils with holes
-    // are taken for filled.
+    // The largest |p - chief| that passes all apertures at an azimuth (rad from x); it is continuous in the azimuth.
+    // Holes in pupils are ignored.
     double rim(double azimuth) const;
     double largest_rim() const { return largest_rim_; }
     double smallest_rim() const { return smallest_rim_; }
     bool passes(glm::dvec2 p) const;
-    bool round() const { return round_; }                        // that of the axis of a symmetric train
-    bool mirrored() const { return mirrored_ && along_.y == 0; } // about the x axis: of such a point of that train
-    double area() const;                                         // of the pupil, in p
-    // Between the least and the largest W, looked for along 24 radii: mm.
+    bool round() const { return round_; }                        // true on the axis of a symmetric train
+    bool mirrored() const { return mirrored_ && along_.y == 0; } // true at a point of a symmetric train's x axis
+    double area() const;                                         // area of the pupil in p
+    // The difference between the largest and the least W (mm), sampled along 24 radii.
     double range() const;
 
-    // Of a p that passes.
+    // W and t at a p that passes.
     double path(glm::dvec2 p) const;             // W, mm; 0 at the chief ray
     glm::dvec2 displacement(glm::dvec2 p) const; // t, mm
-    // What an object plane higher by 1 mm adds to them.
+    // The derivatives of W and of t by the height of the object plane.
     double path_of_height(glm::dvec2 p) const;
     glm::dvec2 displacement_of_height(glm::dvec2 p) const;
-    // (dx/dz, dy/dz) of the light at the detector, in the frame of physics::Detection, less that of the chief ray.
+    // The slope (dx/dz, dy/dz) of the light at the detector relative to that of the chief ray, in the frame of
+    // physics::Detection.
     glm::dvec2 image_slope(glm::dvec2 p) const;
-    glm::dvec2 chief_slope() const { return turned(chief_slope_); } // of the chief ray there
-    glm::dvec2 detector_point() const { return detector_point_; }   // in the same frame, mm
+    glm::dvec2 chief_slope() const { return turned(chief_slope_); } // of the chief ray at the detector
+    glm::dvec2 detector_point() const { return detector_point_; }   // mm, in the frame of physics::Detection
 
   private:
-    // Internally the x axis of p points along the field, and results are turned back: a symmetric train images all
-    // points at one distance alike, and by mirror symmetry half of the pupil is enough.
+    // Internally the x axis of p points along the field, and results are rotated back: a symmetric train images all
+    // points at one distance from the axis alike, and by mirror symmetry half of the pupil is enough.
     glm::dvec2 turned(glm::dvec2 own) const { return own.x * along_ + own.y * glm::dvec2(-along_.y, along_.x); }
     glm::dvec2 own(glm::dvec2 p) const { return {along_.x * p.x + along_.y * p.y, along_.x * p.y - along_.y * p.x}; }
     double own_rim(double azimuth) const;
@@ -89,8 +91,8 @@ class Wavefront {
     double weight_ = 1;
     double index_ = 1;
     double height_ = 0;
-    double defocus_ = 0;                  // mm of defocus() in W at height 0: kept apart, as it is no polynomial
-    glm::dvec2 along_ = glm::dvec2(1, 0); // the x axis of what follows
+    double defocus_ = 0; // mm, factor of defocus() in W at height 0; kept apart, as it is no polynomial
+    glm::dvec2 along_ = glm::dvec2(1, 0); // direction of the internal x axis
     glm::dvec2 chief_ = glm::dvec2(0);
     glm::dvec2 object_point_ = glm::dvec2(0);
     glm::dvec2 chief_slope_ = glm::dvec2(0);
@@ -98,20 +100,20 @@ class Wavefront {
     std::vector<double> rims_; // at azimuths i * 2 pi / count
     double largest_rim_ = 0;
     double smallest_rim_ = 0;
-    double axial_chief_ = 1; // sqrt(n^2 - p^2) there
-    // In (p - chief) / largest rim: the rest of W, and the slopes.
+    double axial_chief_ = 1; // sqrt(n^2 - p^2) at the chief ray
+    // Polynomials in (p - chief) / largest rim: W without its defocus, and the slopes.
     PlanePolynomial path_;
     PlanePolynomial slope_x_;
     PlanePolynomial slope_y_;
-    // On the axis W is a polynomial in the square of the place, and the slope is such a polynomial times the place: a
-    // fast form of what is computed most often.
+    // On the axis W is a polynomial in the squared radius, and the slope is the radius times another: a fast form of
+    // what is computed most often.
     bool round_ = false;
     bool mirrored_ = false;
     std::vector<double> round_path_;
     std::vector<double> round_slope_;
 };
 
-// Of each wavelength, by whichever threads are free.
+// Traces the wavefront of each wavelength in parallel. field: mm in the object.
 std::vector<Wavefront> wavefronts_of(const Instrument& instrument, std::span<const SpectralNode> wavelengths,
                                      glm::dvec2 field = glm::dvec2(0));
 

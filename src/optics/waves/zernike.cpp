@@ -15,7 +15,7 @@ ZernikeOrder zernike_order(int number) {
     while (left > radial) {
         left -= ++radial;
     }
-    // Within an order, pairs of rising |m|, whose even number is the cosine.
+    // Within an order, terms come in pairs of rising |m|; the one of even number is the cosine.
     const int azimuthal = radial % 2 + 2 * ((left + (radial + 1) % 2) / 2);
     return {.radial = radial, .azimuthal = azimuthal, .sine = azimuthal > 0 && number % 2 != 0};
 }
@@ -23,7 +23,8 @@ ZernikeOrder zernike_order(int number) {
 double zernike(int number, glm::dvec2 at) {
     const auto [radial, azimuthal, sine] = zernike_order(number);
     const double rho = glm::length(at);
-    // Its terms alternate in sign and grow with the order; up to order 20 they leave 1e-9.
+    // The terms of the radial polynomial alternate in sign and grow with the order; up to order 20 cancellation leaves
+    // an error of 1e-9.
     double sum = 0;
     for (int k = 0; k <= (radial - azimuthal) / 2; ++k) {
         const double size =

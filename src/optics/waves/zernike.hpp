@@ -7,7 +7,8 @@
 
 namespace vkfv::optics {
 
-// Noll's number, from 1: the radial order, the azimuthal one, and whether the angle's factor is a sine.
+// The orders of a Zernike polynomial: radial, azimuthal, and whether its angular factor is a sine. `number` is Noll's,
+// from 1.
 struct ZernikeOrder {
     int radial = 0;
     int azimuthal = 0;
@@ -18,11 +19,11 @@ ZernikeOrder zernike_order(int number);
 // Z_number at a point of the unit disc.
 double zernike(int number, glm::dvec2 at);
 
-// "astigmatism at 45 degrees"; empty for high orders, which have no names.
+// The aberration's name, such as "astigmatism at 45 degrees"; empty for high orders, which have no names.
 const char* zernike_name(int number);
 
-// Of a wavefront, in wavelengths, of the numbers 1 to `count`: (1 / pi) times the integral of W Z_j over the unit disc,
-// to which the largest disc about the chief ray that lies in the pupil is scaled. The piston is that of W = 0 at the
+// Noll's coefficients 1 to `count` of a wavefront, in wavelengths: (1 / pi) times the integral of W Z_j over the unit
+// disc, which stands for the largest disc about the chief ray within the pupil. The piston is relative to W = 0 at the
 // chief ray.
 std::vector<double> zernike_coefficients(const Wavefront& wavefront, int count);
 

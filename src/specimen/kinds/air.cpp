@@ -16,7 +16,7 @@
 namespace vkfv::specimen {
 namespace {
 
-constexpr int most_points_of_spectrum = 8192; // a side: 1 GiB of complex numbers
+constexpr int most_points_of_spectrum = 8192; // along a side: 1 GiB of complex numbers
 
 const IntegerKey tiles_key("tiles", 1, 64, 4, "Sub-surfaces along each side.");
 const NumberKey tile_size_key =
@@ -37,7 +37,7 @@ const NumberKey hurst_key =
 const FileKey air_file_key("file", Default::in_words("none: the sub-surfaces are random"),
                            "A measured surface, whose middle each of the sub-surfaces repeats.");
 
-// Share of the power at a frequency over that at the frequency 0.
+// The power spectral density relative to its constant part; 0 at the frequency 0, as the mean is 0.
 double relative_power(const Air& d, double frequency) {
     if (frequency == 0 || frequency * d.shortest > 1 + 1e-9)
         return 0;
@@ -66,7 +66,7 @@ HeightField generated(const Air& d, int points, double pitch, std::uint32_t seed
 }
 
 HeightField measured(const Air& d, int points, double pitch, const SourceLocation& where) {
-    const HeightField surface = SurfaceFile{.file = d.file}.heights(where); // all of it, levelled
+    const HeightField surface = SurfaceFile{.file = d.file}.heights(where); // the whole surface, levelled
     const double side = (points - 1) * pitch, tolerance = 1e-9 * side;
     if (surface.x_max() - surface.x_min < side - tolerance || surface.y_max() - surface.y_min < side - tolerance)
         throw InputError({where, "specimen.tile_size_mm", fmt::format("{}", d.size / d.tiles),
@@ -83,7 +83,7 @@ HeightField measured(const Air& d, int points, double pitch, const SourceLocatio
     return field;
 }
 
-// Points along a sub-surface.
+// The number of points along a sub-surface.
 int points_of(const Air& d, const HeightField& field, double pitch, const SourceLocation& where) {
     const auto check = [&](bool condition, const char* key, double found, const std::string& expected) {
         if (!condition)
@@ -150,11 +150,11 @@ void Air::raise(HeightField& field, double asked_pitch, const SourceLocation& wh
         field.interpolated.assign(field.heights.values.size(), false);
     for (int tile_row = 0; tile_row < tiles; ++tile_row)
         for (int tile_column = 0; tile_column < tiles; ++tile_column) {
-            // Sub-surface k of seed s is no other's of a seed nearby.
+            // The multiplier keeps seeds of sub-surfaces distinct between neighbouring seeds.
             const auto number = static_cast<std::uint32_t>(tile_row * tiles + tile_column);
             const HeightField tile =
                 repeated ? *repeated : generated(*this, points, field.pitch_x, seed * 0x9e3779b1u + number);
-            // The last row and column close the footprint with the first ones of their sub-surface.
+            // The last row and column of the footprint repeat the first ones of their sub-surface.
             const auto end = [&](int at) { return at + 1 == tiles ? points + 1 : points; };
             for (int row = 0; row < end(tile_row); ++row)
                 for (int column = 0; column < end(tile_column); ++column) {

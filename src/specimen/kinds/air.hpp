@@ -8,20 +8,20 @@
 
 namespace vkfv::specimen {
 
-// Type AIR (ISO 25178-70): irregular roughness, of tiles x tiles sub-surfaces side by side. Each is a normal random
-// surface of its own whose power spectrum is constant below the frequency 1 / roll_off, falls with the power
-// -2 (1 + hurst) above it and ends at 1 / shortest (B. N. J. Persson et al., "On the nature of surface roughness with
-// application to contact mechanics, sealing, rubber friction and adhesion", 2005); its mean is 0 and its Sq is `sq`
-// exactly. Or each is the middle of the measured surface in `file`, levelled as a whole and of mean 0. Neighbours do
-// not meet in height: the seams are steps one pitch wide.
+// Type AIR (ISO 25178-70): irregular roughness, in tiles x tiles sub-surfaces side by side. Each sub-surface is an
+// independent normal random surface whose power spectrum is constant below the frequency 1 / roll_off, falls with the
+// power -2 (1 + hurst) above it and ends at 1 / shortest (B. N. J. Persson et al., "On the nature of surface roughness
+// with application to contact mechanics, sealing, rubber friction and adhesion", 2005); its mean is 0 and its Sq is
+// `sq` exactly. With a file, each is the middle of the measured surface in `file`, levelled as a whole and of mean 0.
+// Neighbours differ in height at the seams, which are steps one pitch wide.
 struct Air : Square {
-    int tiles = 1;       // along each side; the size is that of all
+    int tiles = 1;       // number along each side; the size is that of all tiles
     double sq = 0;       // mm
-    double roll_off = 0; // wavelength, mm
-    double shortest = 0; // wavelength, mm
-    double hurst = 0;    // exponent
+    double roll_off = 0; // mm, wavelength
+    double shortest = 0; // mm, wavelength
+    double hurst = 0;    // Hurst exponent
     std::uint32_t seed = 0;
-    std::filesystem::path file; // of a measured surface; empty: random ones
+    std::filesystem::path file; // measured surface; empty: random sub-surfaces
 
     static constexpr const char* name = "air";
     static constexpr const char* meaning =

@@ -9,8 +9,8 @@ namespace vkfv::specimen {
 // A wave along x whose frequency changes linearly.
 struct Chirp : Continuous {
     double amplitude = 0;   // half the peak-to-valley height, mm
-    double period = 0;      // at the lowest x, mm
-    double period_stop = 0; // at the highest x, mm
+    double period = 0;      // mm, at the lowest x
+    double period_stop = 0; // mm, at the highest x
 
     static constexpr const char* name = "chirp";
     static constexpr const char* meaning = "A wave along x whose spatial frequency changes linearly.";

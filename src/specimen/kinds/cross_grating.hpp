@@ -6,14 +6,14 @@
 
 namespace vkfv::specimen {
 
-// Type ACG (ISO 25178-70): raised parallelograms where the lines of two gratings cross, the middle of one at the
+// Type ACG (ISO 25178-70): raised parallelograms where the lines of two gratings cross, one of them centred on the
 // origin.
 struct CrossGrating : Square {
-    double period = 0;     // across the first lines, which lie along y; mm
-    double period_y = 0;   // across the second ones
-    double angle = 0;      // from the first direction across the lines to the second, rad
-    double line_width = 0; // of either lines, mm
-    double depth = 0;      // of the ground below them, mm
+    double period = 0;     // mm, across the first lines, which lie along y
+    double period_y = 0;   // mm, across the second lines
+    double angle = 0;      // rad, from the normal of the first lines to that of the second
+    double line_width = 0; // mm, width of the lines of both gratings
+    double depth = 0;      // mm, depth of the ground below the parallelograms
 
     static constexpr const char* name = "cross-grating";
     static constexpr const char* meaning =

@@ -8,8 +8,8 @@ namespace vkfv::specimen {
 
 // Type ACS (ISO 25178-70): the sum of a wave along x and one along y, both rising through 0 at the origin.
 struct CrossSinusoid : Square {
-    double amplitude = 0; // of either wave, mm
-    double period = 0;    // along x, mm
+    double amplitude = 0; // mm, of each wave
+    double period = 0;    // mm, along x
     double period_y = 0;
 
     static constexpr const char* name = "cross-sinusoid";

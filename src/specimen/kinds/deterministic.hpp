@@ -11,9 +11,9 @@ namespace vkfv::specimen {
 // g = (sqrt(5) - 1) / 2, and c such that the root mean square over a period is sq.
 struct Deterministic : Square {
     double sq = 0;     // mm
-    double period = 0; // of the tile, mm
+    double period = 0; // mm, side of the repeated tile
     int orders = 0;
-    double hurst = 0; // how fast short waves fall
+    double hurst = 0; // Hurst exponent, by which short waves fall
 
     static constexpr const char* name = "deterministic";
     static constexpr const char* meaning =

@@ -5,7 +5,7 @@
 namespace vkfv::specimen {
 namespace {
 
-// glTF 2.0 lengths are metres.
+// The glTF standard prescribes metres.
 const ChoiceKey<double> gltf_unit_key = unit_key(1e3, "Of the file; a glTF is to be in metres.");
 
 } // namespace

@@ -6,14 +6,14 @@
 
 namespace vkfv::specimen {
 
-// Types PPR and PPT (ISO 25178-70): lines along y over a ground, the middle of one at x = 0.
+// Types PPR and PPT (ISO 25178-70): lines along y above a ground, one of them centred on x = 0.
 struct Grating : Square {
     enum class Profile { rectangular, triangular };
     Profile profile = Profile::rectangular;
     double period = 0;     // mm
-    double depth = 0;      // of the ground below the lines, mm
-    double line_width = 0; // at half depth, mm; of the rectangular profile
-    double wall = 0;       // width of a flank, mm; 0: one pitch
+    double depth = 0;      // mm, depth of the ground below the lines
+    double line_width = 0; // mm, at half depth; for the rectangular profile
+    double wall = 0;       // mm, width of a flank; 0: one pitch
 
     static constexpr const char* name = "grating";
     static constexpr const char* meaning =

@@ -6,11 +6,11 @@
 
 namespace vkfv::specimen {
 
-// Along y, below the level.
+// A groove along y, below a level plane.
 struct Groove : Square {
-    double width = 0; // between the middles of its flanks, mm
+    double width = 0; // mm, between the middles of its flanks
     double depth = 0; // mm
-    double wall = 0;  // width of a flank, mm; 0: one pitch
+    double wall = 0;  // mm, width of a flank; 0: one pitch
 
     static constexpr const char* name = "groove";
     static constexpr const char* meaning = "A groove along y.";

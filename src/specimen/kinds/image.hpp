@@ -13,11 +13,11 @@ class Section;
 
 namespace vkfv::specimen {
 
-// Heights as grey values.
+// Heights from the grey values of an image.
 struct Image {
     std::filesystem::path file{};
-    double pitch = 0;  // of the pixels, mm
-    double height = 0; // of the value 1 over the value 0, mm
+    double pitch = 0;  // mm, pitch of the pixels
+    double height = 0; // mm, height of the value 1 above the value 0
 
     static constexpr const char* name = "image";
     static constexpr const char* meaning = "Heights as the grey values of an image.";

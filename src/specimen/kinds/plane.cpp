@@ -7,7 +7,7 @@
 namespace vkfv::specimen {
 namespace {
 
-const auto slopes = NumberRange::within(-80, 80); // steeper, the facets no longer resolve the footprint
+const auto slopes = NumberRange::within(-80, 80); // facets on steeper planes would not resolve the footprint
 
 const NumberKey tilt_x_key("tilt_x_deg", slopes, 0.0, "Angle by which the plane rises along x.");
 const NumberKey tilt_y_key("tilt_y_deg", slopes, 0.0, "Angle by which the plane rises along y.");

@@ -6,9 +6,9 @@
 
 namespace vkfv::specimen {
 
-// Level, or tilted.
+// A plane, level or tilted.
 struct Plane : Continuous {
-    double tilt_x = 0, tilt_y = 0; // slope angles along x and y, rad
+    double tilt_x = 0, tilt_y = 0; // rad, slope angles along x and y
 
     static constexpr const char* name = "plane";
     static constexpr const char* meaning = "A plane, level or tilted.";

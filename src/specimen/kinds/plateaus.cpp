@@ -39,13 +39,13 @@ double height_of(const Plateaus& d, std::size_t plateau) {
     return d.heights[d.heights.size() == 1 ? 0 : plateau];
 }
 
-// Letters one after the other, with a gap of this share of the font's size, as wide as a space.
+// The gap between letters, and the width of a space, as shares of the font's size.
 constexpr double gap = 0.12;
 constexpr double space = 0.3;
 
 struct Letter {
     std::string character;
-    images::Ink ink; // of the letter alone; none of a space
+    images::Ink ink; // bounding box of the letter; empty for a space
 };
 
 std::vector<Letter> letters_of(const Plateaus& d, int font_size, const SourceLocation& where) {
@@ -86,29 +86,29 @@ void set_text(HeightField& field, const Plateaus& d, const SourceLocation& where
         fail(where, "text_width_mm", fmt::format("{}", d.text_width),
              fmt::format("a positive length, at most the specimen's {}", d.size),
              "Choose narrower text or a larger specimen.");
-    // Each letter is drawn over the whole grid.
-    constexpr double most_drawn_points = 0x1p31; // some tens of seconds
+    // The work is limited, as each letter is drawn over the whole grid.
+    constexpr double most_drawn_points = 0x1p31; // takes some tens of seconds
     const double points = static_cast<double>(field.heights.values.size());
     if (static_cast<double>(count) * points > most_drawn_points)
         fail(where, "text",
              fmt::format("{} letters on a grid of {} x {} points", count, field.heights.columns, field.heights.rows),
              fmt::format("at most {:.0f} letters on so fine a grid", most_drawn_points / points),
              "Choose a coarser pitch_um or less text, or draw the letters as an image and name it in specimen.file.");
-    // Widths follow the font's size; it is found from those at a large one.
+    // The font's size follows from the widths at a large size, to which widths are proportional.
     constexpr int trial = 1000;
     const double wanted = d.text_width / field.pitch_x;
     const int font_size = static_cast<int>(std::floor(trial * wanted / width_of(letters_of(d, trial, where), trial)));
     if (font_size < 8)
         fail(where, "text_width_mm", fmt::format("{}", d.text_width), "letters of at least 8 points of the grid",
              "Choose wider text, less of it, or a finer pitch.");
-    // A thin letter as wide as the specimen would be far higher.
+    // The limit rejects a thin letter as wide as the specimen, which would be far too high.
     constexpr int highest = 8;
     if (font_size > highest * field.heights.rows)
         fail(where, "text_width_mm", fmt::format("{}", d.text_width),
              fmt::format("letters at most {} times as high as the specimen", highest),
              "Choose narrower text, or more of it.");
     const std::vector<Letter> letters = letters_of(d, font_size, where);
-    // The text's bounding box has its middle on the axis.
+    // The text's bounding box is centred on the axis.
     int top = 0, bottom = 0;
     bool first = true;
     for (const Letter& letter : letters)
@@ -151,7 +151,7 @@ void set_mask(HeightField& field, const Plateaus& d, const SourceLocation& where
              "Give each plateau its height; smoothed edges are grey values too, so save the mask without them.");
     for (int row = 0; row < field.heights.rows; ++row)
         for (int column = 0; column < field.heights.columns; ++column) {
-            // The pixel that the point lies in.
+            // Index of the mask's pixel that contains the point.
             const auto pixel = [](int at, int points, int pixels) {
                 return std::min(pixels - 1, static_cast<int>(std::int64_t{at} * pixels / points));
             };
@@ -197,7 +197,7 @@ void Plateaus::raise(HeightField& field, double, const SourceLocation& where) co
         set_mask(field, *this, where);
         return;
     }
-    // A font's file is opened by a library that would wait for a pipe.
+    // InputFile refuses pipes, on which the font library would wait.
     std::error_code none;
     if (std::filesystem::exists(font, none)) {
         (void)InputFile(font, {.key = "specimen.font", .expected = "the file of a font"});
@@ -210,7 +210,7 @@ std::optional<RandomHeights> Plateaus::random_heights() const {
 }
 
 dimensions::Plateaus Plateaus::feature() const {
-    // Fine enough for the outlines' middles; a large field's distances would take gigabytes.
+    // A grid of this size resolves the middles of outlines; the distances of a large field would take gigabytes.
     constexpr double most_points = 1000;
     Plateaus bare = *this;
     bare.pitch = std::max(pitch, size / most_points);

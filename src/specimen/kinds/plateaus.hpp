@@ -12,15 +12,15 @@
 
 namespace vkfv::specimen {
 
-// Letters or other plateaus on a level ground, their flanks one pitch wide. From text, a letter a plateau; or from an
-// image, whose grey values other than black are plateaus in ascending order.
+// Letters or other plateaus on a level ground, with flanks one pitch wide. They come from text, one plateau a letter,
+// or from an image, in which each grey value other than black is a plateau, in ascending order.
 struct Plateaus : Square {
-    std::vector<double> heights; // over the ground, mm: one for each plateau, or one for all
-    std::string text;            // what they read; else they are those of `file`
+    std::vector<double> heights; // mm, above the ground; one for each plateau, or one for all
+    std::string text;            // letters; empty: plateaus from `file`
     std::string font;            // a name that OpenImageIO finds, or a file
     double text_width = 0;       // mm
     std::filesystem::path file;
-    RandomHeights random; // over all of it
+    RandomHeights random; // added to the ground and the plateaus
 
     static constexpr const char* name = "plateaus";
     static constexpr const char* meaning = "Letters or other plateaus on a level ground.";

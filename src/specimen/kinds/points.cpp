@@ -27,7 +27,7 @@ const NumberKey longest_edge_key("longest_edge_um", NumberRange::positive(), Def
                                  "Triangles with a longer edge, seen along z, are left out: gaps and bays between the "
                                  "points stay open.");
 
-// Points that are left in place of several at one x and y have the mean of their heights.
+// Replaces several points at one x and y by one of the mean height.
 std::vector<glm::dvec3> with_mean_heights(std::vector<glm::dvec3> points, const std::vector<std::uint32_t>& place) {
     std::vector<std::uint32_t> count(points.size(), 0);
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -38,7 +38,7 @@ std::vector<glm::dvec3> with_mean_heights(std::vector<glm::dvec3> points, const 
     return points;
 }
 
-// One point far astray takes the steps from the others that tell them apart.
+// Refuses points of which one lies so far off that the others cannot be distinguished on the grid of the triangulation.
 void require_apart(const std::vector<glm::dvec2>& points, const std::vector<std::uint32_t>& place,
                    const std::filesystem::path& file) {
     std::size_t lost = 0;
@@ -58,7 +58,7 @@ void require_apart(const std::vector<glm::dvec2>& points, const std::vector<std:
     }
 }
 
-// Coordinates whose unit the file states are brought to the units of the keys, in which the rest of the way counts.
+// Converts coordinates whose unit the file states to the units of the keys, which the code that follows expects.
 void take_stated_units(double unit, double height_unit, const std::filesystem::path& file, FilePoints& read) {
     for (int axis = 0; axis < 3; ++axis) {
         const auto stated = read.units[static_cast<std::size_t>(axis)];
@@ -74,7 +74,7 @@ void take_stated_units(double unit, double height_unit, const std::filesystem::p
     }
 }
 
-// Without the points that no triangle has.
+// The mesh of the triangles, without points that no triangle uses.
 FileMesh used(const std::vector<glm::dvec3>& points, std::vector<glm::uvec3> triangles) {
     constexpr std::uint32_t unused = ~0u;
     std::vector<std::uint32_t> place(points.size(), unused);

@@ -6,11 +6,11 @@
 
 namespace vkfv::specimen {
 
-// Type PRI (ISO 25178-70): two flanks along y on a plane, with a level between them or an edge.
+// Type PRI (ISO 25178-70): two flanks along y on a plane, with a level top or an edge between them.
 struct Prism : Square {
-    double height = 0; // over the plane, mm; negative: a V-groove
-    double flank = 0;  // angle of either flank against the plane, rad
-    double top = 0;    // width of the level between the flanks, mm
+    double height = 0; // mm, above the plane; negative: a V-groove
+    double flank = 0;  // rad, angle of either flank to the plane
+    double top = 0;    // mm, width of the level top between the flanks
 
     static constexpr const char* name = "prism";
     static constexpr const char* meaning = "Type PRI of ISO 25178-70: a prism along y, a roof or a V-groove.";

@@ -6,10 +6,10 @@
 
 namespace vkfv::specimen {
 
-// Type ARS (ISO 25178-70): circular waves about the origin, where one has its peak.
+// Type ARS (ISO 25178-70): circular waves about the origin, with a peak there.
 struct RadialSinusoid : Square {
     double amplitude = 0; // mm
-    double period = 0;    // along the radius, mm
+    double period = 0;    // mm, along the radius
 
     static constexpr const char* name = "radial-sinusoid";
     static constexpr const char* meaning = "Type ARS of ISO 25178-70: circular sinusoidal waves about the middle.";

@@ -18,7 +18,7 @@ std::vector<const Key*> Rough::keys() {
 Rough Rough::read(const Section& section) {
     Rough rough;
     read_continuous(section, rough);
-    // The lattice of the roughness may be all the roughness there is.
+    // The lattice of [specimen.roughness] may be the only roughness, so sq_um is optional beside it.
     const bool has_roughness = section.table().optional_table("roughness").has_value();
     const double sq = has_roughness ? section.number(rough_sq_key, 0.0) : section.number(rough_sq_key);
     rough.random = read_random_heights(section, from_um(sq), rough.pitch);

@@ -8,7 +8,7 @@
 
 namespace vkfv::specimen {
 
-// Random heights over a level plane.
+// A level plane with random heights.
 struct Rough : Continuous {
     RandomHeights random;
 

@@ -6,9 +6,9 @@
 
 namespace vkfv::specimen {
 
-// A wave along x.
+// A sine wave along x.
 struct Sinusoid : Continuous {
-    double amplitude = 0; // half the peak-to-valley height, mm
+    double amplitude = 0; // mm, half the peak-to-valley height
     double period = 0;    // mm
 
     static constexpr const char* name = "sinusoid";

@@ -6,10 +6,10 @@
 
 namespace vkfv::specimen {
 
-// A cap on a plane, or a dimple in it.
+// A spherical cap on a plane, or a dimple in it.
 struct Sphere : Continuous {
-    double radius = 0; // of the sphere, mm
-    double height = 0; // of the cap over the plane, mm; negative: a dimple
+    double radius = 0; // mm, radius of the sphere
+    double height = 0; // mm, height of the cap above the plane; negative: a dimple
 
     static constexpr const char* name = "sphere";
     static constexpr const char* meaning = "The cap of a sphere on a plane, or a dimple in it.";

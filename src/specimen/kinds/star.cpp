@@ -32,7 +32,7 @@ void Star::raise(HeightField& field, double, const SourceLocation&) const {
     for (int row = 0; row < field.heights.rows; ++row) {
         for (int column = 0; column < field.heights.columns; ++column) {
             const double x = field.x_min + column * field.pitch_x, y = field.y_min + row * field.pitch_y;
-            const double petal = std::atan2(y, x) / (2 * pi) * petals; // in periods
+            const double petal = std::atan2(y, x) / (2 * pi) * petals; // angle in units of the period
             if (std::hypot(x, y) <= radius && petal - std::floor(petal) < 0.5) {
                 field.heights(column, row) = static_cast<float>(height);
             }

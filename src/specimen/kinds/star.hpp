@@ -6,12 +6,12 @@
 
 namespace vkfv::specimen {
 
-// Type ASG (ISO 25178-70): a star of raised sectors; beyond its radius is the lower level. The edge of a sector lies at
-// an azimuth of 0.
+// Type ASG (ISO 25178-70): a star of raised sectors within a radius; the level outside is the lower one. A sector has
+// an edge at the azimuth 0.
 struct Star : Square {
-    int petals = 0;    // raised sectors
-    double radius = 0; // of their outer end, mm
-    double height = 0; // over the sectors between them, mm
+    int petals = 0;    // number of raised sectors
+    double radius = 0; // mm, radius of the sectors' outer end
+    double height = 0; // mm, height above the sectors between them
 
     static constexpr const char* name = "star";
     static constexpr const char* meaning = "Type ASG of ISO 25178-70: a star of raised sectors.";

@@ -6,10 +6,10 @@
 
 namespace vkfv::specimen {
 
-// Between two levels, with a straight flank along y.
+// A step between two levels, with a straight flank along y.
 struct Step : Continuous {
-    double height = 0; // of the upper level, at x > 0, over the lower one; mm
-    double wall = 0;   // width of the flank, mm; 0: one pitch
+    double height = 0; // mm, of the upper level, at x > 0, above the lower one
+    double wall = 0;   // mm, width of the flank; 0: one pitch
 
     static constexpr const char* name = "step";
     static constexpr const char* meaning = "A step between two levels, along y through the middle.";

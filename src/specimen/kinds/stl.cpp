@@ -5,7 +5,7 @@
 namespace vkfv::specimen {
 namespace {
 
-// STL has no unit, and millimetres are its custom.
+// STL files state no unit; millimetres are customary.
 const ChoiceKey<double> stl_unit_key = unit_key(1.0, "Of the file, which does not say it.");
 
 } // namespace

@@ -30,7 +30,7 @@ const ChoiceKey<double> value_unit_key = [] {
     return key;
 }();
 
-// As many points as fit into `size`, around the centre.
+// The part of a map around its centre that fits into `size` (mm).
 surface::HeightMap cropped(const surface::HeightMap& map, double size, const SourceLocation& mention) {
     const auto points = [size](double pitch) { return static_cast<int>(std::floor(size / pitch * (1 + 1e-9))) + 1; };
     const double width = (map.columns() - 1) * map.pitch_x, height = (map.rows() - 1) * map.pitch_y;

@@ -13,14 +13,14 @@ class Section;
 
 namespace vkfv::specimen {
 
-// The surface in any file that surface::read_surface() knows, cropped around its centre, which comes to x = y = 0, and
-// levelled. Not-measured points cannot be traced: they are interpolated, and the log says how many.
+// A surface from any file that surface::read_surface() supports, cropped around its centre, which is moved to x = y =
+// 0, and levelled. Points that were not measured cannot be traced: they are interpolated, and the log says how many.
 struct SurfaceFile {
     std::filesystem::path file{};
-    double pitch = 0;  // of an image's pixels, mm; 0: the file's own
-    double size = 0;   // of the part that is taken, mm; 0: all of it
+    double pitch = 0;  // mm, pitch of an image's pixels; 0: the file's own
+    double size = 0;   // mm, side of the part to take; 0: all of it
     bool level = true; // remove the least-squares plane, mean height to z = 0
-    double unit = 0;   // of an image's values, mm; 0: the file's own
+    double unit = 0;   // mm per unit of an image's values; 0: the file's own
 
     static constexpr const char* name = "surface";
     static constexpr const char* meaning = "A measured surface, from a file of an instrument or of vkfv.";
