@@ -14,6 +14,11 @@ namespace vkfv {
 // Opens the program's log, for people at first.
 void open_log();
 
+// Colours of the log for people. Automatic: on a terminal that has them, unless the environment's NO_COLOR is set to
+// anything (no-color.org).
+enum class LogColours { automatic, always, never };
+void colour_log(LogColours colours);
+
 // From now on each line is an object with "time" (ISO 8601, UTC) and "level" or "event": messages of the log with
 // "text", and what core/messages/progress.hpp tells. Interruptions too, without a time, which a signal handler cannot
 // tell.

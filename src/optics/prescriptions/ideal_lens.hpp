@@ -12,6 +12,11 @@ Prescription ideal_lens(double focal_length);
 // cone the radius focal_length * numerical_aperture.
 Prescription ideal_objective(double focal_length, double numerical_aperture);
 
+// Of such an objective, `medium` below it and of that index at the reference wavelength: its front, a plane that does
+// nothing to light, at the working distance (mm) from the front focal plane. Of a long working distance the front lies
+// behind the lens that stands for the whole objective: light goes back to it, as to a principal plane.
+Prescription with_front(Prescription objective, double working_distance, const Medium& medium, double index);
+
 // Köhler illumination by two such lenses, from the source on. The source stands in the front focal plane of the
 // condenser, the field stop in the condenser's back focal plane, which is the front focal plane of the field lens. So
 // each point of the source lights the whole field stop evenly, and the source is imaged into the back focal plane of
