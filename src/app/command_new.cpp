@@ -97,7 +97,7 @@ void run_new(const CommandOptions& options) {
                         "Choose another name, or remove the file.");
     }
     write_file(*options.out, text);
-    spdlog::info("{0} is written. Try: vkfv check {0}, vkfv image {0} --z 0, vkfv stack {0}", options.out->string());
+    spdlog::info("{} is written. Its first lines say what to try with it.", options.out->string());
 }
 
 } // namespace

@@ -127,7 +127,7 @@ TEST(DataSheets, TelecentricLensesHaveTheirMagnificationAndAperture) {
 // That of a lens that is telecentric on the object's side: the pupil is at infinity.
 TEST(DataSheets, TelecentricLensesSeeEveryPointFromStraightAbove) {
     const auto instrument = assemble_instrument(of(disc_light + text_of(telecentric_lenses[1]) + small_chip));
-    EXPECT_NEAR(instrument.constants.pupil_curvature, 0, 1e-12);
+    EXPECT_NEAR(instrument.constants.gate_position, 0, 1e-12);
 }
 
 // opto-e.com: of TC4MHRP240-F on a sensor of 1 inch 194.38 mm x 102.88 mm. Its pixels, of the IMX255 as Matrix Vision's

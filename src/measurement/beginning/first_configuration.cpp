@@ -53,11 +53,13 @@ struct Scales {
     double half_diagonal() const { return 0.5 * pixel * std::hypot(columns, rows); }
 };
 
-// Of a specimen over the field: its lowest and its highest place, and the side of the square that it covers. mm.
+// Of a specimen over the field: its lowest and its highest place, the side of the square that it covers, and a height
+// for a first image. mm.
 struct FieldExtent {
     double lowest = 0;
     double highest = 0;
     double size = 0;
+    double focus = 0; // where much of it is sharp
 };
 
 Scales scales_of(const DataSheets& sheets, int side) {
@@ -77,7 +79,7 @@ double covered(const Scales& scales, double height) {
 
 FieldExtent extent_of_surface(const surface::HeightMap& map, double size) {
     const auto level = surface::remove_form(map, {.kind = surface::Form::Kind::plane});
-    FieldExtent extent{.lowest = 0, .highest = 0, .size = size};
+    FieldExtent extent{.lowest = 0, .highest = 0, .size = size, .focus = 0};
     const double middle_x = level.x0 + 0.5 * (level.columns() - 1) * level.pitch_x;
     const double middle_y = level.y0 + 0.5 * (level.rows() - 1) * level.pitch_y;
     for (int row = 0; row < level.rows(); ++row) {
@@ -111,7 +113,10 @@ FirstSpecimen first_sphere(const DataSheets& sheets) {
     constexpr double beyond = 1.1, steepest = 0.77;
     const double reach = std::min(beyond * made.scales.half_diagonal(), steepest * radius);
     const double height = tidy(radius - std::sqrt(radius * radius - reach * reach), 2);
-    made.extent = {.lowest = 0, .highest = height, .size = tidy(2.2 * std::max(reach, made.scales.half_diagonal()), 2)};
+    made.extent = {.lowest = 0,
+                   .highest = height,
+                   .size = tidy(2.2 * std::max(reach, made.scales.half_diagonal()), 2),
+                   .focus = height};
     made.lines = commented("kind = \"sphere\"", "a cap on a plane") +
                  commented("representation = \"analytic\"", "the sphere itself, not facets") +
                  commented("radius_um = " + tidy_number(radius * um_per_mm, 6), "") +
@@ -154,7 +159,8 @@ FirstSpecimen specimen_of(const DataSheets& sheets) {
     FirstSpecimen made{.scales = scales_of(sheets, usual_side), .extent = {}, .lines = {}};
     made.extent = {.lowest = -0.5 * specimen.height,
                    .highest = 0.5 * specimen.height,
-                   .size = tidy(covered(made.scales, specimen.height), 2)};
+                   .size = tidy(covered(made.scales, specimen.height), 2),
+                   .focus = 0.5 * specimen.height};
     const std::string pitch =
         commented("pitch_um = " + tidy_number(0.5 * made.scales.resolution * um_per_mm, 2), "of its facets");
     if (specimen.kind == Kind::plane) {
@@ -300,9 +306,9 @@ std::string first_configuration(const DataSheets& given, const std::string& name
     const double rays = tidy(rays_a_pixel * scales.columns * scales.rows, 2);
     std::string text =
         fmt::format("# {}, {}, {} light of {}, {}: written by vkfv new.\n"
-                    "# vkfv check {} | vkfv image {} --z 0 | vkfv stack {}; vkfv explain KEY tells of each key.\n\n",
+                    "# vkfv check {} | vkfv image {} --z {} | vkfv stack {}; vkfv explain KEY tells of each key.\n\n",
                     sheets.objective.text, sheets.camera.text, sheets.light.ring ? "ring" : "coaxial", sheets.led.text,
-                    sheets.specimen.text, name, name, name) +
+                    sheets.specimen.text, name, name, tidy(specimen.extent.focus * um_per_mm, 3), name) +
         source_lines(sheets, scales) + objective_lines(sheets.objective) + detector_lines(sheets.camera, scales) +
         "\n[specimen]\n" + specimen.lines +
         commented("size_mm = " + tidy_number(specimen.extent.size), "more than the field") +
