@@ -37,7 +37,7 @@ TEST(FirstConfiguration, IsShortAndItsInstrumentIsTheOneAskedFor) {
         SCOPED_TRACE(given.objective.text);
         const std::string text = first_configuration(given, "my.toml");
         const auto lines = std::ranges::count(text, '\n');
-        EXPECT_LE(lines, 55);
+        EXPECT_LE(lines, 48);
         const auto configuration = read_configuration(TomlTable::parse(text, "my.toml"));
         const auto instrument = assemble_instrument(configuration);
         const auto& first = instrument.first_order;

@@ -139,7 +139,7 @@ FirstSpecimen measured_surface(const DataSheets& sheets) {
              .remedy = "Choose an objective of a larger magnification, or a larger surface."});
     }
     made.extent = extent_of_surface(map, std::min(side, covered(made.scales, 0)));
-    made.extent.size = std::floor(made.extent.size * 1e4) / 1e4;
+    made.extent.size = std::min(tidy(made.extent.size, 3), tidy(0.99 * side, 3)); // within the file, rounded or not
     made.lines =
         commented("kind = \"surface\"", "measured; its least-squares plane is removed") +
         commented("file = " + toml_quoted(std::filesystem::absolute(sheets.specimen.file).lexically_normal().string()),
@@ -161,18 +161,16 @@ FirstSpecimen specimen_of(const DataSheets& sheets) {
                    .highest = 0.5 * specimen.height,
                    .size = tidy(covered(made.scales, specimen.height), 2),
                    .focus = 0.5 * specimen.height};
-    const std::string pitch =
-        commented("pitch_um = " + tidy_number(0.5 * made.scales.resolution * um_per_mm, 2), "of its facets");
     if (specimen.kind == Kind::plane) {
-        made.lines = commented("kind = \"plane\"", "") + pitch;
+        made.lines = commented("kind = \"plane\"", "");
     } else if (specimen.kind == Kind::step) {
         made.lines = commented("kind = \"step\"", "along y, the upper level at x > 0") +
-                     commented("height_um = " + tidy_number(specimen.height * um_per_mm, 6), "") + pitch;
+                     commented("height_um = " + tidy_number(specimen.height * um_per_mm, 6), "");
     } else {
         made.lines =
             commented("kind = \"sinusoid\"", "along x") +
             commented("amplitude_um = " + tidy_number(0.5 * specimen.height * um_per_mm, 6), "half its height") +
-            commented("period_um = " + tidy_number(specimen.length * um_per_mm, 6), "") + pitch;
+            commented("period_um = " + tidy_number(specimen.length * um_per_mm, 6), "");
     }
     return made;
 }
@@ -199,13 +197,12 @@ std::string source_lines(const DataSheets& sheets, const Scales& scales) {
         const double radius = objective.focal_length() * objective.numerical_aperture * condenser / field_lens;
         text += commented("radius_mm = " + tidy_number(radius), "fills the objective's pupil");
     }
-    text += "\n[source.spectrum]\n" + commented("kind = \"led\"", "");
-    if (!sheets.led.colour.empty()) {
-        text += commented("colour = " + toml_quoted(sheets.led.colour), "vkfv list leds; or peak_um and full_width_um");
-    } else {
-        text += commented("peak_um = " + tidy_number(sheets.led.peak_um, 6), "") +
-                commented("full_width_um = " + tidy_number(sheets.led.full_width_um, 6), "at half maximum");
-    }
+    const std::string spectrum =
+        sheets.led.colour.empty() ? fmt::format("peak_um = {}, full_width_um = {}", tidy_number(sheets.led.peak_um, 6),
+                                                tidy_number(sheets.led.full_width_um, 6))
+                                  : "colour = " + toml_quoted(sheets.led.colour);
+    text += commented(fmt::format("spectrum = {{ kind = \"led\", {} }}", spectrum),
+                      sheets.led.colour.empty() ? "" : "vkfv list leds");
     if (sheets.light.ring) {
         return text + "\n[beam_splitter]\n" + commented("reflectance = 0.0", "a ring light does without") +
                commented("transmittance = 1.0", "");
@@ -269,8 +266,7 @@ std::string detector_lines(const SheetCamera& camera, const Scales& scales) {
                                   camera.columns, camera.rows));
     if (has_preset(camera.sensor)) {
         text += "\n[camera]\n" +
-                commented("preset = " + toml_quoted(camera.sensor), "its noise; without [camera] images are light") +
-                commented("saturation = 0.7", "of the full well, where the stack is brightest");
+                commented("preset = " + toml_quoted(camera.sensor), "its noise; without [camera] images are light");
     }
     return text;
 }
@@ -308,24 +304,22 @@ std::string first_configuration(const DataSheets& given, const std::string& name
         fmt::format("# {}, {}, {} light of {}, {}: written by vkfv new.\n"
                     "# vkfv check {} | vkfv image {} --z {} | vkfv stack {}; vkfv explain KEY tells of each key.\n\n",
                     sheets.objective.text, sheets.camera.text, sheets.light.ring ? "ring" : "coaxial", sheets.led.text,
-                    sheets.specimen.text, name, name, tidy(specimen.extent.focus * um_per_mm, 3), name) +
+                    sheets.specimen.kind == SheetSpecimen::Kind::surface ? sheets.specimen.file.filename().string()
+                                                                         : sheets.specimen.text,
+                    name, name, tidy(specimen.extent.focus * um_per_mm, 3), name) +
         source_lines(sheets, scales) + objective_lines(sheets.objective) + detector_lines(sheets.camera, scales) +
         "\n[specimen]\n" + specimen.lines +
         commented("size_mm = " + tidy_number(specimen.extent.size), "more than the field") +
-        "\n[specimen.reflectance]\n" + commented("kind = \"noise\"", "a printed texture, which focus is seen by") +
-        commented("pitch_um = " + tidy_number(0.35 * resolution_um, 2), "") +
-        commented("correlation_length_um = " + tidy_number(1.75 * resolution_um, 2),
-                  fmt::format("the optics resolve {:.2g} um", resolution_um)) +
-        "\n[specimen.material]\n" + commented("scatter = \"lambertian\"", "vkfv list scatter") +
+        commented(
+            fmt::format("reflectance = {{ kind = \"noise\", pitch_um = {}, correlation_length_um = {} }}",
+                        tidy_number(0.35 * resolution_um, 2), tidy_number(1.75 * resolution_um, 2)),
+            fmt::format("a printed texture, by which focus is seen; the optics resolve {:.2g} um", resolution_um)) +
         scan_lines(scales, specimen.extent) + "\n[trace]\n" +
         commented("estimator = \"backward\"", "from the pixels to the light: less noise") +
         commented("rays = " + tidy_number(rays, 2), fmt::format("an image: {:.0f} a pixel", rays_a_pixel)) +
         "\n[topography]\n" +
         commented(fmt::format("window_px = {}", window),
                   fmt::format("{:.2g} um, five times what the optics resolve", window * scales.pixel * um_per_mm));
-    if (has_preset(sheets.camera.sensor)) {
-        text += "\n[output]\n" + commented("images = \"uint16\"", "grey values");
-    }
     (void)read_configuration(TomlTable::parse(text, name)); // what does not fit together is told of now
     return text;
 }
