@@ -212,7 +212,7 @@ std::string usage_text() {
                        "  vkfv stack my.toml            a focus stack, its heights and a report\n\n";
     std::vector<std::string> names;
     std::ranges::transform(all_commands(), std::back_inserter(names), &Command::name);
-    text += wrapped(fmt::format("{}", fmt::join(names, ", ")), "commands:", 10);
+    text += wrapped(fmt::format("{}", fmt::join(names, ", ")), "commands:", 11);
     return text + "vkfv help tells of all of them, vkfv help COMMAND of one\n";
 }
 

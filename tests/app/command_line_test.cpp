@@ -267,7 +267,7 @@ TEST(CommandLine, BashCompletes) {
         {"vkfv stack x --set specimen.level = t", "true\n"},
         {"vkfv stack x --set trace.rays = 1", "\n"},
         {"vkfv explain detector.cam", "detector.camera\n"},
-        {"vkfv explain detec", "detector\ndetector.camera\n"},
+        {"vkfv explain detector.pix", "detector.pixel_um\ndetector.pixels\n"},
         {"vkfv check x --color a", "auto\nalways\n"},
         {"vkfv help trace", "trace-rays\n"},
         {"vkfv completion f", "fish\n"}};
@@ -317,7 +317,7 @@ TEST(CommandLine, NewWritesWhatChecksClean) {
                                  {"--objective", "20x/0.45", "--light", "ring", "--specimen", "step:10um"},
                                  {"--objective", "50x/0.8", "--led", "460nm", "--working_distance_mm", "1"},
                                  {"--objective", "telecentric:2x/0.1", "--specimen", "sphere:1mm"},
-                                 {"--objective", "20x_0.41", "--camera", "2/3:2448x2048", "--specimen", "plane"}};
+                                 {"--objective", "5x/0.15", "--camera", "2/3:2448x2048", "--specimen", "plane"}};
     for (const Words& instrument : instruments) {
         Words words = {"new"};
         words.insert(words.end(), instrument.begin(), instrument.end());

@@ -38,7 +38,7 @@ std::string tidy_number(double value, int digits = 3) {
 
 // A line with its comment at the column where those of its table stand.
 std::string commented(const std::string& setting, const std::string& comment) {
-    return comment.empty() ? setting + "\n" : fmt::format("{:<28}# {}\n", setting, comment);
+    return comment.empty() ? setting + "\n" : fmt::format("{:<27} # {}\n", setting, comment);
 }
 
 // Lengths of the object, mm.
@@ -72,9 +72,10 @@ Scales scales_of(const DataSheets& sheets, int side) {
             .rows = std::min(side, sheets.camera.rows)};
 }
 
-// The whole field, and what its edges see out of focus.
+// The whole field, and what its edges see out of focus, as far as light goes to waste on more.
 double covered(const Scales& scales, double height) {
-    return 1.5 * std::max(scales.width(), scales.rows * scales.pixel) + 4 * height;
+    const double field = std::max(scales.width(), scales.rows * scales.pixel);
+    return std::min(1.5 * field + 4 * height, 1.9 * field);
 }
 
 FieldExtent extent_of_surface(const surface::HeightMap& map, double size) {
@@ -316,7 +317,7 @@ std::string first_configuration(const DataSheets& given, const std::string& name
             fmt::format("a printed texture, by which focus is seen; the optics resolve {:.2g} um", resolution_um)) +
         scan_lines(scales, specimen.extent) + "\n[trace]\n" +
         commented("estimator = \"backward\"", "from the pixels to the light: less noise") +
-        commented("rays = " + tidy_number(rays, 2), fmt::format("an image: {:.0f} a pixel", rays_a_pixel)) +
+        commented(fmt::format("rays = {:.0f}", rays), fmt::format("an image: {:.0f} a pixel", rays_a_pixel)) +
         "\n[topography]\n" +
         commented(fmt::format("window_px = {}", window),
                   fmt::format("{:.2g} um, five times what the optics resolve", window * scales.pixel * um_per_mm));
