@@ -228,8 +228,8 @@ LightOfSource read_spectrum(const Section& source, Configuration& configuration)
 }
 
 // A flat ring, as data sheets state it. Seen from the focus it is the band about its middle line that is as wide as the
-// ring's face is foreshortened: their edges stand in the same directions to the second order of the width, and a
-// Lambertian face lights the focus by the solid angle that it covers there.
+// ring's face is foreshortened: a Lambertian face lights the focus by the solid angle that it covers there, which
+// differs between both by the square of the width (0.4 % of a ring of 30 to 34 mm, 3.5 % of one of 40 to 60 mm).
 void read_flat_ring(const Section& source, optics::RingLightDescription& ring) {
     for (const NumberKey* key : {&ring_distance, &width}) {
         if (source.has(*key)) {
@@ -238,10 +238,6 @@ void read_flat_ring(const Section& source, optics::RingLightDescription& ring) {
     }
     const double inner = source.number(inner_diameter);
     const double outer = source.number(outer_diameter);
-    if (!(outer > inner)) {
-        source.fail(outer_diameter, fmt::format("more than the inner diameter, {:.6g}", inner),
-                    "Exchange them, or correct one.");
-    }
     const double radius = 0.25 * (inner + outer);
     double height = 0;
     if (source.has(ring_working_distance)) {
@@ -253,6 +249,10 @@ void read_flat_ring(const Section& source, optics::RingLightDescription& ring) {
     } else {
         ring.elevation = source.number(elevation) * radians_per_degree;
         height = radius * std::tan(ring.elevation);
+    }
+    if (source.has(inner_diameter) && source.has(outer_diameter) && !(outer > inner)) {
+        source.fail(outer_diameter, fmt::format("more than the inner diameter, {:.6g}", inner),
+                    "Exchange them, or correct one.");
     }
     ring.distance = std::hypot(radius, height);
     ring.width = 0.5 * (outer - inner) * std::sin(ring.elevation);

@@ -419,7 +419,7 @@ std::vector<Case> cases() {
         instrument_fault("DetectorOfFormatAndSize", "pixels = 8", "pixels = 8\nformat = \"2/3\"",
                          {"c.toml:23:10", "detector.format", "either size_mm or format", "Remove one"}),
         instrument_fault(
-            "LedInNanometres", "wavelength_um = 0.5876",
+            "WidthOfALedInNanometres", "wavelength_um = 0.5876",
             "[source.spectrum]\nkind = \"led\"\npeak_um = 0.53\nfull_width_um = 35",
             {"c.toml:8:17", "source.spectrum.full_width_um", "a width below the peak's wavelength", "0.035 for 35 nm"}),
         instrument_fault("LedOfNoPeak", "wavelength_um = 0.5876", "[source.spectrum]\nkind = \"led\"",
