@@ -52,7 +52,10 @@ Command keys_command() {
 Command explain_command() {
     return {.name = "explain",
             .summary = "Tell of one key of a configuration, or of one of its tables",
-            .operands = {{"KEY", "\"trace.rays\", \"rays\" or \"trace\"", into(&ExplainOptions::key)}},
+            .operands = {{.name = "KEY",
+                          .description = "\"trace.rays\", \"rays\" or \"trace\"",
+                          .target = into(&ExplainOptions::key),
+                          .key = true}},
             .run = run_explain,
             .example = "vkfv explain trace.estimator",
             .about_vkfv = true};

@@ -1,7 +1,9 @@
 #include "app/commands.hpp"
 
+#include "camera/sensors.hpp"
 #include "core/files/assets.hpp"
 #include "core/toml/toml_reader.hpp"
+#include "optics/media/light_emitting_diodes.hpp"
 #include "optics/prescriptions/prescription.hpp"
 #include "physics/scatter_registry.hpp"
 #include "specimen/kinds.hpp"
@@ -81,12 +83,35 @@ std::vector<Listed> scatter_models() {
     return list;
 }
 
+std::vector<Listed> cameras() {
+    std::vector<Listed> list;
+    for (const auto& sensor : camera::sensors()) {
+        list.push_back(
+            {std::string(sensor.name), fmt::format("{} x {} pixels of {} um, {} inch: {}", sensor.columns, sensor.rows,
+                                                   sensor.pixel_um, sensor.format, sensor.source)});
+    }
+    return list;
+}
+
+std::vector<Listed> leds() {
+    std::vector<Listed> list;
+    for (const auto& colour : optics::led_colours()) {
+        list.push_back({std::string(colour.name),
+                        colour.full_width_um > 0 ? fmt::format("peak {:.4g} um, full width at half maximum {:.4g} um",
+                                                               colour.peak_um, colour.full_width_um)
+                                                 : fmt::format("blue of {:.4g} um on phosphor", colour.peak_um)});
+    }
+    return list;
+}
+
 using Lister = std::function<std::vector<Listed>()>;
 const std::vector<std::pair<std::string, Lister>>& listers() {
     static const std::vector<std::pair<std::string, Lister>> all = {
         {"objectives", [] { return prescriptions("objectives"); }},
         {"tube-lenses", [] { return prescriptions("tube_lenses"); }},
         {"illuminators", [] { return prescriptions("illuminators"); }},
+        {"cameras", cameras},
+        {"leds", leds},
         {"glasses", glasses},
         {"specimens", specimens},
         {"standards", standards},

@@ -30,6 +30,7 @@ Command import_command();
 Command keys_command();
 Command explain_command();
 Command template_command();
+Command new_command();
 Command list_command();
 Command help_command();
 Command completion_command();

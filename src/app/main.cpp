@@ -70,7 +70,9 @@ int main(int argument_count, char** argument_values) {
     try {
         vkfv::open_log();
         vkfv::command_line::declare_commands(vkfv::app::commands(), vkfv::app::version_text);
-        vkfv::command_line::run_command_line(argument_count, argument_values);
+        if (!vkfv::command_line::run_command_line(argument_count, argument_values)) {
+            return wrong_input;
+        }
         return standard_output_is_whole() ? done : report_lost_output();
     } catch (const CLI::ParseError& error) {
         return report(fmt::format("command line: {}. vkfv --help lists all options.", error.what()), wrong_input);

@@ -29,6 +29,7 @@ struct CommandOptions {
     bool quiet = false;
     bool timings = false;
     bool log_json = false; // acted upon before anything else is read: run_command_line()
+    std::string color;     // likewise
     bool json = false;
     bool markdown = false;
 
@@ -114,6 +115,7 @@ struct Option {
     std::pair<int, int> range{};        // of an integer, ends included
     bool list = false;                  // values are parted by commas; else several stand each behind the option
     bool file = false;                  // for completion
+    bool setting = false;               // likewise: a key of the configuration, "=" and its value
     std::string needed{};               // not empty: the command cannot do without, and this says what it is
     std::string foremost{};             // the command that is named first of those that take it
 };
@@ -124,7 +126,8 @@ struct Operand {
     std::variant<Take<std::string>, Take<std::vector<std::string>>> target;
     std::vector<std::string> choices{}; // empty: it is a file
     bool needed = true;
-    int least = 2; // of several
+    int least = 2;    // of several
+    bool key = false; // of the configuration, or a table: for completion
 };
 
 struct Command {

@@ -49,8 +49,10 @@ class CommandLine {
                 declare_operands(*named_, operands_[k]);
             }
         }
-        for (const auto& [option, owners] : all_options()) {
-            declare(*option);
+        for (const auto& option : all_options()) {
+            if (is_declared(option)) {
+                declare(*option.option);
+            }
         }
     }
 
@@ -63,10 +65,14 @@ class CommandLine {
         }
         const Command& command = named_ != nullptr ? *named_ : chosen();
         for (const auto& option : all_options()) {
-            check_needed(option, command);
+            if (is_declared(option)) {
+                check_needed(option, command);
+            }
         }
         for (const auto& option : all_options()) {
-            refuse_stray(option, command);
+            if (is_declared(option)) {
+                refuse_stray(option, command);
+            }
         }
         place_operands(command);
         spdlog::set_level(options_.quiet ? spdlog::level::warn : spdlog::level::info);
@@ -80,6 +86,12 @@ class CommandLine {
     }
 
   private:
+    // Where commands are options, the options of those that are none could be mistaken for commands.
+    bool is_declared(const OwnedOption& owned) const {
+        return named_ != nullptr ||
+               std::ranges::any_of(owned.owners, [](const Command* owner) { return owner->also_option; });
+    }
+
     void declare_as_option(const Command& command, std::vector<std::string>& operands) {
         const std::string name = "--" + command.name;
         std::vector<std::string> names;
@@ -289,14 +301,20 @@ const Command& command_named(const std::string& name) {
 
 void declare_commands(std::vector<Command> commands, std::function<std::string()> version) {
     for (auto& command : commands) {
-        command.options.push_back({.name = "--quiet",
+        command.options.push_back({.name = "--quiet,-q",
                                    .value = "",
-                                   .description = "Only warnings and errors, no progress",
+                                   .description = "Only warnings and errors, no progress; also -q",
                                    .target = into(&CommandOptions::quiet)});
         command.options.push_back({.name = "--log-json",
                                    .value = "",
                                    .description = "Messages and progress as JSON, an object a line",
                                    .target = into(&CommandOptions::log_json)});
+        command.options.push_back({.name = "--color",
+                                   .value = "WHEN",
+                                   .description = "Colours of messages; auto: on a terminal, unless NO_COLOR is set",
+                                   .target = into(&CommandOptions::color),
+                                   .fallback = "auto",
+                                   .choices = {"auto", "always", "never"}});
         command.options.push_back({.name = "--timings",
                                    .value = "",
                                    .description = "At the end, where the command's time went",
@@ -306,7 +324,34 @@ void declare_commands(std::vector<Command> commands, std::function<std::string()
     declared_version() = std::move(version);
 }
 
-void run_command_line(int argument_count, char** argument_values) {
+namespace {
+
+// What stands behind the last `--color`, or in it; a word that it does not take is told of by the parser.
+void colour_log_as_asked(int argument_count, char** argument_values) {
+    constexpr std::string_view name = "--color";
+    for (int i = 1; i < argument_count; ++i) {
+        const std::string_view word = argument_values[i];
+        const std::string_view next = i + 1 < argument_count ? argument_values[i + 1] : "";
+        const bool joined = word.starts_with(name) && word.substr(name.size()).starts_with('=');
+        const std::string_view value = joined ? word.substr(name.size() + 1) : word == name ? next : "";
+        if (value == "always") {
+            colour_log(LogColours::always);
+        } else if (value == "never") {
+            colour_log(LogColours::never);
+        } else if (value == "auto") {
+            colour_log(LogColours::automatic);
+        }
+    }
+}
+
+} // namespace
+
+bool run_command_line(int argument_count, char** argument_values) {
+    if (argument_count < 2) {
+        fmt::print(stderr, "{}", usage_text());
+        return false;
+    }
+    colour_log_as_asked(argument_count, argument_values);
     // A wrong command line is told in JSON too.
     if (std::any_of(argument_values, argument_values + argument_count,
                     [](const char* word) { return std::string_view(word) == "--log-json"; })) {
@@ -320,12 +365,13 @@ void run_command_line(int argument_count, char** argument_values) {
         line.parse(argument_count - (is_name ? 1 : 0), argument_values + (is_name ? 1 : 0));
     } catch (const CLI::CallForHelp&) {
         fmt::print("{}", help_text(named));
-        return;
+        return true;
     } catch (const CLI::CallForVersion& version) {
         fmt::print("{}\n", version.what());
-        return;
+        return true;
     }
     line.run();
+    return true;
 }
 
 } // namespace vkfv::command_line

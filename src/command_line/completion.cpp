@@ -2,12 +2,14 @@
 
 #include "command_line/command.hpp"
 #include "command_line/reference.hpp"
+#include "configuration/key_documents.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 
 namespace vkfv::command_line {
 
@@ -27,12 +29,71 @@ std::vector<std::string> option_names(const Command& command) {
 }
 
 bool takes_files(const Command& command) {
-    return std::ranges::any_of(command.operands,
-                               [](const auto& operand) { return operand.choices.empty() && operand.needed; });
+    return std::ranges::any_of(command.operands, [](const auto& operand) {
+        return operand.choices.empty() && operand.needed && !operand.key;
+    });
+}
+
+// Each key of the configuration, dotted, with the words that it takes where these are known: "true" and "false", or its
+// choices of whatever kind of its table.
+const std::map<std::string, std::vector<std::string>>& configuration_keys() {
+    static const std::map<std::string, std::vector<std::string>> keys = [] {
+        std::map<std::string, std::vector<std::string>> all;
+        for (const KeyTable* table : key_tables()) {
+            for (const Key* key : table->keys) {
+                auto& words = all[table->path.empty() ? key->name : table->path + "." + key->name];
+                auto known = key->type == Key::Type::choice ? key->choice_names() : std::vector<std::string>();
+                if (key->type == Key::Type::boolean) {
+                    known = {"true", "false"};
+                }
+                std::ranges::copy_if(known, std::back_inserter(words), [&words](const std::string& word) {
+                    return std::ranges::find(words, word) == words.end();
+                });
+            }
+        }
+        return all;
+    }();
+    return keys;
+}
+
+// The same for `explain`: tables too.
+std::vector<std::string> key_names() {
+    std::vector<std::string> names;
+    for (const KeyTable* table : key_tables()) {
+        if (!table->path.empty()) {
+            names.push_back(table->path);
+        }
+    }
+    for (const auto& [key, words] : configuration_keys()) {
+        names.push_back(key);
+    }
+    return names;
+}
+
+std::vector<std::string> settings() {
+    std::vector<std::string> all;
+    for (const auto& [key, words] : configuration_keys()) {
+        all.push_back(key + "=");
+    }
+    return all;
+}
+
+// Of the options that take a key and its value, in the script's own form.
+std::vector<std::string> setting_options() {
+    std::vector<std::string> names;
+    for (const auto& [option, owners] : all_options()) {
+        if (option->setting) {
+            names.push_back(first_name(*option));
+        }
+    }
+    return names;
 }
 
 // What a command's operand may be, if no file.
 std::vector<std::string> operand_words(const Command& command) {
+    if (!command.operands.empty() && command.operands.front().key) {
+        return key_names();
+    }
     if (command.operands.empty() || takes_files(command)) {
         return {};
     }
@@ -49,8 +110,13 @@ std::string quoted(const std::string& text) {
 
 // The first word is the command, or the option that stands for it, `--stack`.
 std::string bash_script() {
-    std::string options, operands, values;
+    std::string options, operands, values, choices;
     std::vector<std::string> flags, free, files;
+    for (const auto& [key, words] : configuration_keys()) {
+        if (!words.empty()) {
+            choices += fmt::format("    {}) words='{}' ;;\n", key, fmt::join(words, " "));
+        }
+    }
     for (const auto& command : all_commands()) {
         options += fmt::format("    {}) options='{}' ;;\n", command.name, fmt::join(option_names(command), " "));
         if (const auto words = operand_words(command); !words.empty()) {
@@ -66,7 +132,7 @@ std::string bash_script() {
         if (!option->choices.empty()) {
             values +=
                 fmt::format("    {}) words='{}' files= ;;\n", first_name(*option), fmt::join(option->choices, " "));
-        } else if (!option->value.empty()) {
+        } else if (!option->value.empty() && !option->setting) {
             (option->file ? files : free).push_back(first_name(*option));
         }
     }
@@ -75,6 +141,28 @@ _vkfv() {{
     local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}}
     local command=${{COMP_WORDS[1]#--}} options= words= files= IFS=$' \t\n'
     COMPREPLY=()
+    # A key and its value are one word to vkfv, and three to bash where "=" parts words.
+    local key= at=$COMP_CWORD
+    if [[ $word == = ]]; then
+        word= key=$before at=$((at - 1))
+    elif [[ $before == = ]] && ((at > 2)); then
+        key=${{COMP_WORDS[at - 2]}} at=$((at - 2))
+    elif [[ $word == *=* ]]; then
+        key=${{word%%=*}}
+    fi
+    if ((at > 2)) && [[ ${{COMP_WORDS[at - 1]}} == @({setting}) ]]; then
+        if [[ -n $key ]]; then
+            case $key in
+{choices}            esac
+            local joined=
+            [[ $word == *=* ]] && joined=$key=
+            COMPREPLY=($(compgen -P "$joined" -W "$words" -- "${{word#"$joined"}}"))
+        else
+            compopt -o nospace 2> /dev/null
+            COMPREPLY=($(compgen -W '{settings}' -- "$word"))
+        fi
+        return
+    fi
     if ((COMP_CWORD == 1)); then
         words='{commands}' options='{flags} --help --version'
         COMPREPLY=($(compgen -W "$words $options" -- "$word"))
@@ -84,7 +172,7 @@ _vkfv() {{
 {options}    esac
     case $command in
 {operands}    esac
-    case $before in
+    ((COMP_CWORD > 2)) && case $before in
 {values}    {files}) words= files=1 ;;
     {free}) return ;;
     esac
@@ -98,7 +186,9 @@ complete -o filenames -F _vkfv vkfv
 )",
                        fmt::arg("commands", fmt::join(command_names(), " ")), fmt::arg("flags", fmt::join(flags, " ")),
                        fmt::arg("options", options), fmt::arg("operands", operands), fmt::arg("values", values),
-                       fmt::arg("files", fmt::join(files, " | ")), fmt::arg("free", fmt::join(free, " | ")));
+                       fmt::arg("files", fmt::join(files, " | ")), fmt::arg("free", fmt::join(free, " | ")),
+                       fmt::arg("choices", choices), fmt::arg("settings", fmt::join(settings(), " ")),
+                       fmt::arg("setting", fmt::join(setting_options(), "|")));
 }
 
 // Of _arguments: brackets and colons part its fields.
@@ -112,13 +202,19 @@ std::string zsh_field(const std::string& text) {
 }
 
 std::string zsh_script() {
-    std::string described, cases;
+    std::string described, cases, choices;
+    for (const auto& [key, words] : configuration_keys()) {
+        if (!words.empty()) {
+            choices += fmt::format("        {}) compadd -- {} ;;\n", key, fmt::join(words, " "));
+        }
+    }
     for (const auto& command : all_commands()) {
         described += fmt::format("        {}\n", quoted(command.name + ":" + command.summary));
         cases += fmt::format("    {}) _arguments '--help[what it takes]'", command.name);
         for (const auto& option : command.options) {
-            const std::string action = !option.choices.empty() ? fmt::format("({})", fmt::join(option.choices, " "))
-                                                               : (option.file ? "_files" : " ");
+            const std::string action = option.setting            ? "_vkfv_setting"
+                                       : !option.choices.empty() ? fmt::format("({})", fmt::join(option.choices, " "))
+                                                                 : (option.file ? "_files" : " ");
             const std::string value = option.value.empty() ? "" : ":" + zsh_field(option.value) + ":" + action;
             cases += " " + quoted(first_name(option) + "[" + zsh_field(option.description) + "]" + value);
         }
@@ -130,6 +226,16 @@ std::string zsh_script() {
         cases += " ;;\n";
     }
     return fmt::format(R"(#compdef vkfv
+_vkfv_setting() {{
+    if [[ $PREFIX == *=* ]]; then
+        local key=${{PREFIX%%=*}}
+        compset -P '*='
+        case $key in
+{}        esac
+    else
+        compadd -S '' -- {}
+    fi
+}}
 _vkfv() {{
     local -a commands=(
 {})
@@ -144,17 +250,26 @@ _vkfv() {{
 }}
 compdef _vkfv vkfv
 )",
-                       described, cases);
+                       choices, fmt::join(settings(), " "), described, cases);
 }
 
 std::string fish_script() {
-    std::string script = "complete -c vkfv -f\n";
+    std::vector<std::string> whole; // settings, with their values where these are known
+    for (const auto& [key, words] : configuration_keys()) {
+        if (words.empty()) {
+            whole.push_back(key + "=");
+        }
+        std::ranges::transform(words, std::back_inserter(whole),
+                               [&key = key](const std::string& word) { return key + "=" + word; });
+    }
+    std::string script = fmt::format("set -g __vkfv_settings {}\ncomplete -c vkfv -f\n", fmt::join(whole, " "));
     for (const auto& command : all_commands()) {
         script += fmt::format("complete -c vkfv -n __fish_use_subcommand -a {} -d {}\n", command.name,
                               quoted(command.summary));
         const std::string inside = fmt::format("complete -c vkfv -n '__fish_seen_subcommand_from {}'", command.name);
         for (const auto& option : command.options) {
-            const std::string value = !option.choices.empty()
+            const std::string value = option.setting ? " -x -a '$__vkfv_settings'"
+                                      : !option.choices.empty()
                                           ? fmt::format(" -x -a '{}'", fmt::join(option.choices, " "))
                                       : option.value.empty() ? ""
                                                              : (option.file ? " -r -F" : " -x");

@@ -35,7 +35,8 @@ Option setting_option() {
     return {.name = "--set",
             .value = "KEY=VALUE",
             .description = "Any key of the configuration, for example --set specimen.material.g=0.65; may be repeated",
-            .target = Take<std::vector<std::string>>(take)};
+            .target = Take<std::vector<std::string>>(take),
+            .setting = true};
 }
 
 double nesting_index(double um) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <sstream>
 
 namespace vkfv::command_line {
@@ -113,7 +114,8 @@ std::vector<Section> sections_of_program() {
          .entries = {{"VKFV_ASSETS",
                       "A folder of assets (objectives, tube_lenses, illuminators, glasses, specimens, stacks) that "
                       "is searched first; then those beside the configuration and in the folders above "
-                      "it, then those that came with the program"}}}};
+                      "it, then those that came with the program"},
+                     {"NO_COLOR", "Set to anything: messages without colours, unless --color says otherwise"}}}};
 }
 
 std::vector<Section> whole_reference() {
@@ -200,6 +202,18 @@ std::string first_name(const Option& option) {
 
 std::string term_of(const Option& option) {
     return option.value.empty() ? first_name(option) : first_name(option) + " " + option.value;
+}
+
+std::string usage_text() {
+    std::string text = "usage: vkfv COMMAND ... [OPTIONS]\n\n"
+                       "  vkfv new --out my.toml        a configuration to begin with\n"
+                       "  vkfv check my.toml            what its instrument does\n"
+                       "  vkfv image my.toml --z 0      one image\n"
+                       "  vkfv stack my.toml            a focus stack, its heights and a report\n\n";
+    std::vector<std::string> names;
+    std::ranges::transform(all_commands(), std::back_inserter(names), &Command::name);
+    text += wrapped(fmt::format("{}", fmt::join(names, ", ")), "commands:", 11);
+    return text + "vkfv help tells of all of them, vkfv help COMMAND of one\n";
 }
 
 std::string help_text(const Command* command) {

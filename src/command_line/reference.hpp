@@ -20,6 +20,8 @@ std::string first_name(const Option& option);
 // "--z_step_um UM"; "--json".
 std::string term_of(const Option& option);
 
+// For a terminal: a few lines for who types `vkfv` alone.
+std::string usage_text();
 // For a terminal; null: of the whole program.
 std::string help_text(const Command* command);
 // The whole reference, as Markdown (docs/commands.md) and in roff, for man.

@@ -70,6 +70,8 @@ struct Configuration : ReadKeys {
     optics::GlassCatalog glasses; // of the program and of the file's glass_catalogs; none where no instrument is read
     optics::InstrumentDescription instrument; // without the light's field
     std::optional<LightFieldDescription> light_field;
+    // Of an objective with a parfocal length: its shoulder, from which distances count, behind its back vertex, mm.
+    double shoulder = 0;
     std::optional<camera::CameraOptions> camera; // none: images are light
     std::optional<specimen::Description> specimen;
     std::optional<scan::ScanPlan> scan;

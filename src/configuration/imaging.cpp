@@ -1,17 +1,26 @@
 // [objective], [cover_glass], [tube_lens] and [detector].
+#include "camera/sensors.hpp"
 #include "configuration/optical_parts.hpp"
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "optics/prescriptions/ideal_lens.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
 
 namespace vkfv {
 
 namespace {
 
 enum class LensKind { prescription, ideal };
+enum class ObjectiveKind { prescription, ideal, telecentric };
 
 constexpr std::int64_t most_pixels = 16384;        // a side; the accumulator stays within 2 GiB
 constexpr double default_tube_lens_distance = 100; // mm, in the infinity space
+constexpr double usual_tube_length = 200;          // mm
+constexpr NumberRange magnification_range = {.minimum = 1e-3, .maximum = 1e4};
 
 const ChoiceKey<LensKind> lens_kind("kind",
                                     {{LensKind::ideal, "ideal", "a lens without aberrations"},
@@ -20,13 +29,50 @@ const ChoiceKey<LensKind> lens_kind("kind",
 const NumberKey focal_length = of_kinds(
     {"ideal"},
     for_example("20.0", NumberKey("focal_length_mm", NumberRange::positive(), needed, "Focal length in air.")));
+
+const ChoiceKey<ObjectiveKind> objective_kind(
+    "kind",
+    {{ObjectiveKind::ideal, "ideal", "a lens without aberrations"},
+     {ObjectiveKind::prescription, "prescription", "a lens by its surfaces"},
+     {ObjectiveKind::telecentric, "telecentric",
+      "a lens without aberrations that images by itself, telecentric on both sides: it has no [tube_lens] beside it"}},
+    ObjectiveKind::prescription, "How the lens is described.");
+const NumberKey objective_focal_length =
+    of_kinds({"ideal"}, for_example("20.0", NumberKey("focal_length_mm", NumberRange::positive(),
+                                                      Default::in_words("tube_length_mm over magnification"),
+                                                      "Focal length in air; or give magnification.")));
+const NumberKey magnification =
+    of_kinds({"ideal"}, for_example("10.0", NumberKey("magnification", magnification_range,
+                                                      Default::in_words("tube_length_mm over focal_length_mm"),
+                                                      "Magnification by which the objective is named, with a tube lens "
+                                                      "of tube_length_mm; or give focal_length_mm. With another tube "
+                                                      "lens the image is larger or smaller.")));
+const NumberKey tube_length =
+    of_kinds({"ideal"}, NumberKey("tube_length_mm", NumberRange::positive(), usual_tube_length,
+                                  "Focal length of the tube lens that the magnification is stated for: often 200 mm, "
+                                  "of Olympus 180 mm, of Zeiss 164.5 mm."));
+const NumberKey telecentric_magnification =
+    of_kinds({"telecentric"}, for_example("2.0", NumberKey("magnification", magnification_range, needed,
+                                                           "Size of the image over that of the object.")));
+const NumberKey working_distance =
+    of_kinds({"ideal"}, NumberKey("working_distance_mm", NumberRange::positive(), Default::in_words("the focal length"),
+                                  "From the plane of focus to the objective's front. Light does not depend on it."));
+const NumberKey telecentric_working_distance =
+    of_kinds({"telecentric"}, for_example("65.0", NumberKey("working_distance_mm", NumberRange::positive(), needed,
+                                                            "From the plane of focus to the lens's front.")));
+const NumberKey parfocal_length =
+    of_kinds({"ideal"}, NumberKey("parfocal_length_mm", NumberRange::positive(),
+                                  Default::in_words("the back focal plane takes the shoulder's place"),
+                                  "From the plane of focus to the objective's shoulder, from where then "
+                                  "tube_lens.distance_mm counts: often 45, 60 or 95 mm."));
 const TextKey objective_prescription = of_kinds(
     {"prescription"}, for_example("\"10x_0.28\"", TextKey("prescription", Default::none(),
                                                           "Prescription from the specimen to the back: a name in "
                                                           "assets/objectives, or a path.")));
-const NumberKey numerical_aperture =
-    of_kinds({"ideal"}, for_example("0.3", NumberKey("numerical_aperture", NumberRange::positive(), needed,
-                                                     "Of the cone from the specimen, below the index there.")));
+const NumberKey numerical_aperture = of_kinds(
+    {"ideal", "telecentric"}, for_example("0.3", NumberKey("numerical_aperture", NumberRange::positive(), needed,
+                                                           "Of the cone from the specimen, below the index "
+                                                           "there.")));
 const TextKey immersion("immersion", Default::in_words("the prescription's, else air"),
                         "Medium between specimen and objective.");
 const NumberKey aperture_stop =
@@ -44,31 +90,67 @@ const TextKey tube_prescription = of_kinds(
     {"prescription"}, for_example("\"200mm\"", TextKey("prescription", Default::none(),
                                                        "Prescription from the objective to the detector: a name in "
                                                        "assets/tube_lenses, or a path.")));
-const NumberKey tube_distance("distance_mm", NumberRange::at_least(0), default_tube_lens_distance,
-                              "From the objective's back vertex to the tube lens's first.");
+const NumberKey
+    tube_distance("distance_mm", NumberRange::at_least(0), default_tube_lens_distance,
+                  "From the objective's back vertex, or its shoulder where it has a parfocal length, to the tube "
+                  "lens's first.");
 
 const NumberKey detector_size =
     for_example("1.28", NumberKey("size_mm", NumberRange::positive(), needed,
-                                  "Width of the detector, in its own plane, where pixel_um is not given; its height "
-                                  "follows, as pixels are square."));
-const NumberKey pixel_pitch("pixel_um", NumberRange::positive(), Default::in_words("size_mm over its columns"),
+                                  "Width of the detector, in its own plane, where neither pixel_um, camera nor format "
+                                  "is given; its height follows, as pixels are square."));
+const NumberKey pixel_pitch("pixel_um", NumberRange::positive(),
+                            Default::in_words("the camera's, or size_mm over its columns"),
                             "Side of a pixel, in the detector's plane, in place of size_mm.");
+
+std::vector<ChoiceKey<const camera::Sensor*>::Option> camera_options() {
+    std::vector<ChoiceKey<const camera::Sensor*>::Option> options;
+    for (const auto& sensor : camera::sensors()) {
+        options.push_back({&sensor, std::string(sensor.name),
+                           fmt::format("{} x {} pixels of {} um", sensor.columns, sensor.rows, sensor.pixel_um)});
+    }
+    return options;
+}
+const ChoiceKey<const camera::Sensor*> detector_camera = with_default(
+    Default::in_words("none: its pixels are given"),
+    ChoiceKey<const camera::Sensor*>("camera", camera_options(), {},
+                                     "The camera, by its sensor: pixel_um and pixels are its own where they are not "
+                                     "given. [camera] tells its noise."));
+
+std::vector<ChoiceKey<const camera::SensorFormat*>::Option> format_options() {
+    std::vector<ChoiceKey<const camera::SensorFormat*>::Option> options;
+    for (const auto& format : camera::sensor_formats()) {
+        options.push_back(
+            {&format, std::string(format.name), fmt::format("{} mm x {} mm", format.width, format.height)});
+    }
+    return options;
+}
+const ChoiceKey<const camera::SensorFormat*> detector_format =
+    with_default(Default::in_words("none: its size is given"),
+                 ChoiceKey<const camera::SensorFormat*>(
+                     "format", format_options(), {},
+                     "Optical format in inches, which stands for size_mm: the width of such a chip."));
 const NumberKey fill_factor("fill_factor", NumberRange::share(), 1.0,
                             "Share of a pixel's area that is sensitive: a square in its middle. A camera's quantum "
                             "efficiency by EMVA 1288 contains it.");
-const IntegerPairKey detector_pixels =
-    for_example("64", IntegerPairKey("pixels", 1, most_pixels, "Columns and rows; one number: both."));
+const IntegerPairKey detector_pixels = for_example(
+    "64", IntegerPairKey("pixels", 1, most_pixels,
+                         "Columns and rows; one number: both. With camera they may be left out, and are all "
+                         "that it has."));
 
 } // namespace
 
 const KeyTable& objective_keys() {
-    static const KeyTable table{.path = "objective",
-                                .presence = KeyTable::Presence::needed,
-                                .meaning = "The objective.",
-                                .subject = "an objective",
-                                .kind = "kind",
-                                .keys = with_placement({&lens_kind, &immersion, &objective_prescription, &aperture_stop,
-                                                        &focal_length, &numerical_aperture})};
+    static const KeyTable table{
+        .path = "objective",
+        .presence = KeyTable::Presence::needed,
+        .meaning = "The objective.",
+        .subject = "an objective",
+        .kind = "kind",
+        .keys =
+            with_placement({&objective_kind, &immersion, &objective_prescription, &aperture_stop,
+                            &objective_focal_length, &magnification, &telecentric_magnification, &tube_length,
+                            &numerical_aperture, &working_distance, &telecentric_working_distance, &parfocal_length})};
     return table;
 }
 
@@ -84,12 +166,13 @@ const KeyTable& cover_glass_keys() {
 
 const KeyTable& tube_lens_keys() {
     static const KeyTable table{.path = "tube_lens",
-                                .presence = KeyTable::Presence::needed,
-                                .meaning = "The tube lens, behind the beam splitter.",
+                                .presence = KeyTable::Presence::optional,
+                                .meaning = "The tube lens, behind the beam splitter. Required, unless the objective is "
+                                           "telecentric.",
                                 .subject = "a tube lens",
                                 .kind = "kind",
-                                .keys =
-                                    with_placement({&lens_kind, &tube_prescription, &focal_length, &tube_distance})};
+                                .keys = with_placement({&lens_kind, &tube_prescription, &focal_length, &tube_distance}),
+                                .shown = true};
     return table;
 }
 
@@ -99,34 +182,98 @@ const KeyTable& detector_keys() {
                                 .meaning = "The camera's chip, in the plane where the specimen's best focus is imaged.",
                                 .subject = "a detector",
                                 .kind = "",
-                                .keys = with_placement({&detector_size, &pixel_pitch, &detector_pixels, &fill_factor})};
+                                .keys = with_placement({&detector_camera, &detector_format, &detector_size,
+                                                        &pixel_pitch, &detector_pixels, &fill_factor})};
     return table;
 }
+
+namespace {
+
+// By the focal length, or by what the objective is named by.
+double read_objective_focal_length(const Section& section) {
+    if (!section.has(magnification)) {
+        if (section.has(tube_length)) {
+            section.note(tube_length, "a magnification beside it, which it is the tube length of",
+                         "Give magnification in place of focal_length_mm, or remove it.");
+        }
+        return section.number(objective_focal_length);
+    }
+    if (section.has(objective_focal_length)) {
+        section.note(magnification, "either focal_length_mm or magnification", "Remove one of them.");
+    }
+    const double named = section.number(magnification);
+    return section.number(tube_length) / named;
+}
+
+optics::Prescription read_ideal_objective(const Section& section, Configuration& configuration) {
+    const double length = read_objective_focal_length(section);
+    auto objective = optics::ideal_objective(length, section.number(numerical_aperture));
+    const auto& medium = configuration.instrument.immersion.value_or(optics::Medium::air());
+    const double index = medium.index(configuration.instrument.spectrum.reference_um);
+    if (const auto distance = section.number_if_given(working_distance)) {
+        objective = optics::with_front(std::move(objective), *distance, medium, index);
+    }
+    if (const auto distance = section.number_if_given(parfocal_length)) {
+        configuration.shoulder = *distance - (index * length + length); // to the back focal plane
+    }
+    return objective;
+}
+
+// Lens, stop in its back focal plane, and a second lens as far behind that.
+void read_telecentric_lens(const Section& section, optics::InstrumentDescription& instrument) {
+    const double times = section.number(telecentric_magnification);
+    const double aperture = section.number(numerical_aperture);
+    const double front = section.number(telecentric_working_distance);
+    instrument.objective = optics::ideal_objective(front, aperture);
+    instrument.tube_lens = optics::ideal_lens(times * front);
+    instrument.objective_to_tube_lens = times * front;
+}
+
+} // namespace
 
 void read_objective(const TomlTable& root, Configuration& configuration) {
     auto& instrument = configuration.instrument;
     const Section section(root.table("objective"), objective_keys(), configuration);
-    const LensKind kind = section.kind(lens_kind);
+    const ObjectiveKind kind = section.kind(objective_kind);
     if (section.has(immersion)) {
         instrument.immersion = read_glass(section, immersion, configuration);
     }
-    if (kind == LensKind::ideal) {
-        const double length = section.number(focal_length);
-        instrument.objective = optics::ideal_objective(length, section.number(numerical_aperture));
-    } else {
+    switch (kind) {
+    case ObjectiveKind::ideal:
+        instrument.objective = read_ideal_objective(section, configuration);
+        break;
+    case ObjectiveKind::telecentric:
+        read_telecentric_lens(section, instrument);
+        break;
+    case ObjectiveKind::prescription:
         instrument.objective = read_prescription(section, objective_prescription, configuration, "objectives");
         instrument.aperture_stop_radius = section.number_if_given(aperture_stop);
+        break;
     }
     instrument.objective_placement = read_placement(section);
 }
 
 void read_tube_lens(const TomlTable& root, Configuration& configuration) {
     auto& instrument = configuration.instrument;
+    if (!instrument.tube_lens.surfaces.empty()) { // the telecentric lens's own
+        if (root.has("tube_lens")) {
+            root.fail("tube_lens", "no [tube_lens] with objective.kind = \"telecentric\", which images by itself",
+                      "Remove it, or make the objective an ideal one.");
+        }
+        return;
+    }
     const Section section(root.table("tube_lens"), tube_lens_keys(), configuration);
     instrument.tube_lens = section.kind(lens_kind) == LensKind::ideal
                                ? optics::ideal_lens(section.number(focal_length))
                                : read_prescription(section, tube_prescription, configuration, "tube_lenses");
-    instrument.objective_to_tube_lens = section.number(tube_distance);
+    const double distance = section.number(tube_distance);
+    if (distance + configuration.shoulder < 0) {
+        section.fail(tube_distance,
+                     fmt::format("at least {:.6g}, as the objective's back focal plane lies so far behind its shoulder",
+                                 -configuration.shoulder),
+                     "Move the tube lens farther from the shoulder, or correct objective.parfocal_length_mm.");
+    }
+    instrument.objective_to_tube_lens = distance + configuration.shoulder;
     instrument.tube_lens_placement = read_placement(section);
 }
 
@@ -143,18 +290,47 @@ void read_cover_glass(const TomlTable& root, Configuration& configuration) {
     configuration.instrument.cover_glass = glass;
 }
 
-void read_detector(const TomlTable& root, Configuration& configuration) {
-    auto& instrument = configuration.instrument;
-    const Section section(root.table("detector"), detector_keys(), configuration);
-    const auto pixels = section.integer_pair(detector_pixels);
-    instrument.detector_pixels = {static_cast<int>(pixels[0]), static_cast<int>(pixels[1])};
+namespace {
+
+// A camera's pixels may be others, as binning makes them, but its size follows from them.
+void refuse_two_sizes(const Section& section) {
     if (section.has(pixel_pitch) && section.has(detector_size)) {
         section.fail(pixel_pitch, "either size_mm or pixel_um", "Remove one of them.");
     }
-    if (section.has(pixel_pitch)) {
+    for (const Key* other : {static_cast<const Key*>(&detector_size), static_cast<const Key*>(&detector_format)}) {
+        if (section.has(detector_camera) && section.has(*other)) {
+            section.fail(detector_camera, fmt::format("either {} or camera", other->name), "Remove one of them.");
+        }
+    }
+    for (const Key* other : {&detector_size, &pixel_pitch}) {
+        if (section.has(detector_format) && section.has(*other)) {
+            section.fail(detector_format, fmt::format("either {} or format", other->name), "Remove one of them.");
+        }
+    }
+}
+
+} // namespace
+
+void read_detector(const TomlTable& root, Configuration& configuration) {
+    auto& instrument = configuration.instrument;
+    const Section section(root.table("detector"), detector_keys(), configuration);
+    const camera::Sensor* const sensor =
+        section.has(detector_camera) ? section.choice(detector_camera) : static_cast<const camera::Sensor*>(nullptr);
+    if (sensor != nullptr && !section.has(detector_pixels)) {
+        section.record(detector_pixels, fmt::format("[{}, {}]", sensor->columns, sensor->rows));
+        instrument.detector_pixels = {sensor->columns, sensor->rows};
+    } else {
+        const auto pixels = section.integer_pair(detector_pixels);
+        instrument.detector_pixels = {static_cast<int>(pixels[0]), static_cast<int>(pixels[1])};
+    }
+    refuse_two_sizes(section);
+    if (section.has(pixel_pitch) || sensor != nullptr) {
         constexpr double harmless = 1; // where the value is none
-        const double pitch = section.number_if_given(pixel_pitch).value_or(harmless);
+        const double pitch = sensor != nullptr ? section.number(pixel_pitch, sensor->pixel_um)
+                                               : section.number_if_given(pixel_pitch).value_or(harmless);
         instrument.detector_width = pitch * mm_per_um * instrument.detector_pixels.columns;
+    } else if (section.has(detector_format)) {
+        instrument.detector_width = section.choice(detector_format)->width;
     } else {
         instrument.detector_width = section.number(detector_size);
     }

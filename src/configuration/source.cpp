@@ -3,18 +3,22 @@
 #include "configuration/tables.hpp"
 #include "core/files/digest.hpp"
 #include "core/parsing/number_table.hpp"
+#include "optics/media/light_emitting_diodes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace vkfv {
 
 namespace {
 
 enum class SourceKind { disc, rectangle, ring };
-enum class SpectrumKind { monochromatic, lines, gaussian, table };
+enum class SpectrumKind { monochromatic, lines, gaussian, led, table };
 
 constexpr double least_flux = 1e-15, largest_flux = 1e15; // W; what falls on a pixel stays a float32
 
@@ -37,15 +41,31 @@ const NumberKey die_height =
 const NumberKey illuminator_distance = of_kinds(
     {"disc", "rectangle"}, NumberKey("distance_mm", NumberRange::positive(), Default::in_words("the prescription's"),
                                      "From disc or rectangle to the illuminator's first vertex."));
-const NumberKey ring_distance =
-    of_kinds({"ring"}, for_example("30.0", NumberKey("distance_mm", NumberRange::positive(), needed,
-                                                     "From the ring's middle line to the focus on the axis.")));
-const NumberKey elevation =
-    of_kinds({"ring"}, for_example("45.0", NumberKey("elevation_deg", NumberRange::between(0, 90), needed,
-                                                     "Height of the light over the horizon, seen from the focus.")));
-const NumberKey width =
-    of_kinds({"ring"},
-             for_example("5.0", NumberKey("width_mm", NumberRange::positive(), needed, "Width of the luminous band.")));
+const NumberKey ring_distance = of_kinds(
+    {"ring"}, for_example("30.0", NumberKey("distance_mm", NumberRange::positive(), needed,
+                                            "From the ring's middle line to the focus on the axis; or give the "
+                                            "ring's diameters.")));
+const NumberKey elevation = of_kinds(
+    {"ring"}, for_example("45.0", NumberKey("elevation_deg", NumberRange::between(0, 90), needed,
+                                            "Height of the light over the horizon, seen from the focus; with the "
+                                            "diameters this or working_distance_mm.")));
+const NumberKey width = of_kinds(
+    {"ring"},
+    for_example("5.0", NumberKey("width_mm", NumberRange::positive(), needed,
+                                 "Width of the luminous band, at right angles to the direction from the focus; or "
+                                 "give the ring's diameters.")));
+const NumberKey inner_diameter =
+    of_kinds({"ring"}, NumberKey("inner_diameter_mm", NumberRange::positive(),
+                                 Default::in_words("distance_mm and width_mm are given"),
+                                 "Inner diameter of the ring's luminous face, as its data sheet states it: a flat ring "
+                                 "about the axis, in place of distance_mm and width_mm."));
+const NumberKey outer_diameter =
+    of_kinds({"ring"}, NumberKey("outer_diameter_mm", NumberRange::positive(),
+                                 Default::in_words("distance_mm and width_mm are given"), "Outer diameter of it."));
+const NumberKey ring_working_distance = of_kinds(
+    {"ring"}, NumberKey("working_distance_mm", NumberRange::positive(), Default::in_words("as elevation_deg says"),
+                        "With the diameters: height of the ring's face over the plane of focus, in place of "
+                        "elevation_deg."));
 const IntegerKey segments = of_kinds(
     {"ring"}, IntegerKey("segments", 1, physics::f64::RING_CAPACITY, 1, "Parts of equal angle, from +x towards +y."));
 const NumberKey fill =
@@ -59,6 +79,7 @@ const ChoiceKey<SpectrumKind>
     spectrum_kind("kind",
                   {{SpectrumKind::gaussian, "gaussian",
                     fmt::format("a bell, cut off at {} standard deviations", optics::gaussian_reach)},
+                   {SpectrumKind::led, "led", "a light-emitting diode, by its colour or by peak and width: a bell"},
                    {SpectrumKind::lines, "lines", "several lines"},
                    {SpectrumKind::monochromatic, "monochromatic", "one line"},
                    {SpectrumKind::table, "table", "a density by points, linear between them"}},
@@ -75,12 +96,57 @@ const NumberKey centre =
 const NumberKey full_width =
     of_kinds({"gaussian"}, NumberKey("full_width_um", NumberRange::positive(), needed,
                                      "Full width at half maximum, below the centre's wavelength."));
+std::vector<ChoiceKey<const optics::LedColour*>::Option> colour_options() {
+    constexpr double nm_per_um = 1e3;
+    std::vector<ChoiceKey<const optics::LedColour*>::Option> options;
+    for (const auto& colour : optics::led_colours()) {
+        options.push_back({&colour, std::string(colour.name),
+                           colour.full_width_um > 0
+                               ? fmt::format("{:.4g} nm, {:.4g} nm wide", nm_per_um * colour.peak_um,
+                                             nm_per_um * colour.full_width_um)
+                               : fmt::format("blue of {:.4g} nm on phosphor", nm_per_um * colour.peak_um)});
+    }
+    return options;
+}
+const ChoiceKey<const optics::LedColour*> colour =
+    with_default(Default::in_words("none: peak_um and full_width_um are given"),
+                 of_kinds({"led"}, ChoiceKey<const optics::LedColour*>("colour", colour_options(), {},
+                                                                       "Its colour, with typical values of peak_um and "
+                                                                       "full_width_um where they are not given.")));
+const Default of_colour = Default::in_words("the colour's; must be given without one");
+const NumberKey led_peak =
+    of_kinds({"led"}, NumberKey("peak_um", wavelength_range_um, of_colour, "Wavelength of its largest flux."));
+const NumberKey led_width = of_kinds({"led"}, NumberKey("full_width_um", NumberRange::positive(), of_colour,
+                                                        "Full width of its spectrum at half maximum, below the "
+                                                        "peak's wavelength."));
 const NumbersKey densities =
     of_kinds({"table"}, NumbersKey("densities", NumberRange::at_least(0), Default::none(),
                                    "Flux per wavelength at each wavelength, relative to the others."));
 const FileKey spectrum_file =
     of_kinds({"table"}, FileKey("file", Default::in_words("the table in the configuration"),
                                 "CSV file of wavelength_um,density, instead of a table in the configuration."));
+
+optics::Spectrum read_led(const Section& section) {
+    const optics::LedColour* const named =
+        section.has(colour) ? section.choice(colour) : static_cast<const optics::LedColour*>(nullptr);
+    if (named != nullptr && !(named->full_width_um > 0)) {
+        for (const NumberKey* key : {&led_peak, &led_width}) {
+            if (section.has(*key)) {
+                section.note(*key,
+                             fmt::format("no such key with colour = \"{}\", whose spectrum is no bell", named->name),
+                             "Remove it, or the colour.");
+            }
+        }
+        return optics::spectrum_of(*named);
+    }
+    const double peak = named != nullptr ? section.number(led_peak, named->peak_um) : section.number(led_peak);
+    const double width = named != nullptr ? section.number(led_width, named->full_width_um) : section.number(led_width);
+    if (!(width < peak)) { // tells nanometres from micrometres too
+        section.fail(led_width, fmt::format("a width below the peak's wavelength, {:.6g} um", peak),
+                     "Give both in um: 0.035 for 35 nm.");
+    }
+    return optics::Spectrum::gaussian(peak, width);
+}
 
 optics::Spectrum read_spectrum_file(const Section& section) {
     const TomlTable& table = section.table();
@@ -126,6 +192,8 @@ optics::Spectrum read_spectrum_table(const Section& section) {
             middle,
             section.number_in(full_width, table.sound(table.path() + ".centre_um") ? widths : full_width.range));
     }
+    case SpectrumKind::led:
+        return read_led(section);
     case SpectrumKind::table:
         break;
     }
@@ -159,11 +227,46 @@ LightOfSource read_spectrum(const Section& source, Configuration& configuration)
     return light;
 }
 
+// A flat ring, as data sheets state it. Seen from the focus it is the band about its middle line that is as wide as the
+// ring's face is foreshortened: a Lambertian face lights the focus by the solid angle that it covers there, which
+// differs between both by the square of the width (0.4 % of a ring of 30 to 34 mm, 3.5 % of one of 40 to 60 mm).
+void read_flat_ring(const Section& source, optics::RingLightDescription& ring) {
+    for (const NumberKey* key : {&ring_distance, &width}) {
+        if (source.has(*key)) {
+            source.note(*key, "either the ring's diameters, or distance_mm and width_mm", "Remove one of both.");
+        }
+    }
+    const double inner = source.number(inner_diameter);
+    const double outer = source.number(outer_diameter);
+    const double radius = 0.25 * (inner + outer);
+    double height = 0;
+    if (source.has(ring_working_distance)) {
+        if (source.has(elevation)) {
+            source.note(elevation, "either working_distance_mm or elevation_deg", "Remove one of them.");
+        }
+        height = source.number(ring_working_distance);
+        ring.elevation = std::atan2(height, radius);
+    } else {
+        ring.elevation = source.number(elevation) * radians_per_degree;
+        height = radius * std::tan(ring.elevation);
+    }
+    if (source.has(inner_diameter) && source.has(outer_diameter) && !(outer > inner)) {
+        source.fail(outer_diameter, fmt::format("more than the inner diameter, {:.6g}", inner),
+                    "Exchange them, or correct one.");
+    }
+    ring.distance = std::hypot(radius, height);
+    ring.width = 0.5 * (outer - inner) * std::sin(ring.elevation);
+}
+
 optics::RingLightDescription read_ring(const Section& source) {
     optics::RingLightDescription ring;
-    ring.distance = source.number(ring_distance);
-    ring.elevation = source.number(elevation) * radians_per_degree;
-    ring.width = source.number(width);
+    if (source.has(inner_diameter) || source.has(outer_diameter) || source.has(ring_working_distance)) {
+        read_flat_ring(source, ring);
+    } else {
+        ring.distance = source.number(ring_distance);
+        ring.elevation = source.number(elevation) * radians_per_degree;
+        ring.width = source.number(width);
+    }
     ring.segments = static_cast<int>(source.integer(segments));
     ring.fill = source.number(fill);
     ring.on = source.booleans(on, std::vector<bool>(static_cast<std::size_t>(ring.segments), true));
@@ -210,27 +313,27 @@ ReadSource read_one(const Section& section, bool has_illuminator, Configuration&
 } // namespace
 
 const KeyTable& source_keys() {
-    static const KeyTable table{.path = "source",
-                                .presence = KeyTable::Presence::needed,
-                                .meaning =
-                                    "The light. Each of several sources stands below a [[source]] of its own: one "
-                                    "disc or rectangle at most, and ring lights.",
-                                .subject = "a source",
-                                .kind = "kind",
-                                .keys = {&kind, &flux, &radius, &die_width, &die_height, &illuminator_distance,
-                                         &ring_distance, &elevation, &width, &segments, &fill, &on, &wavelength},
-                                .several = true};
+    static const KeyTable table{
+        .path = "source",
+        .presence = KeyTable::Presence::needed,
+        .meaning = "The light. Each of several sources stands below a [[source]] of its own: one "
+                   "disc or rectangle at most, and ring lights.",
+        .subject = "a source",
+        .kind = "kind",
+        .keys = {&kind, &flux, &radius, &die_width, &die_height, &illuminator_distance, &ring_distance, &elevation,
+                 &width, &inner_diameter, &outer_diameter, &ring_working_distance, &segments, &fill, &on, &wavelength},
+        .several = true};
     return table;
 }
 
 const KeyTable& spectrum_keys() {
-    static const KeyTable table{
-        .path = "source.spectrum",
-        .presence = KeyTable::Presence::optional,
-        .meaning = "The light's wavelengths, instead of source.wavelength_um.",
-        .subject = "a spectrum",
-        .kind = "kind",
-        .keys = {&spectrum_kind, &line, &wavelengths, &weights, &centre, &full_width, &densities, &spectrum_file}};
+    static const KeyTable table{.path = "source.spectrum",
+                                .presence = KeyTable::Presence::optional,
+                                .meaning = "The light's wavelengths, instead of source.wavelength_um.",
+                                .subject = "a spectrum",
+                                .kind = "kind",
+                                .keys = {&spectrum_kind, &line, &wavelengths, &weights, &centre, &full_width, &colour,
+                                         &led_peak, &led_width, &densities, &spectrum_file}};
     return table;
 }
 

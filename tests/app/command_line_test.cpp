@@ -258,6 +258,17 @@ TEST(CommandLine, BashCompletes) {
         {"vkfv stack x --out de", "demo one.toml\n"},
         {"vkfv stack x --rays ''", "\n"},
         {"vkfv list gl", "glasses\n"},
+        {"vkfv --camera de", "demo one.toml\n"}, // the command, and not the option of `vkfv new`
+        {"vkfv stack x --set trace.est", "trace.estimator=\n"},
+        {"vkfv stack x --set trace.estimator = ba", "backward\n"}, // as bash parts words
+        {"vkfv stack x --set trace.estimator = ''", "forward\nbackward\n"},
+        {"vkfv stack x --set trace.estimator =", "forward\nbackward\n"},
+        {"vkfv stack x --set trace.estimator=ba", "trace.estimator=backward\n"}, // where \"=\" parts none
+        {"vkfv stack x --set specimen.level = t", "true\n"},
+        {"vkfv stack x --set trace.rays = 1", "\n"},
+        {"vkfv explain detector.cam", "detector.camera\n"},
+        {"vkfv explain detector.pix", "detector.pixel_um\ndetector.pixels\n"},
+        {"vkfv check x --color a", "auto\nalways\n"},
         {"vkfv help trace", "trace-rays\n"},
         {"vkfv completion f", "fish\n"}};
     for (const auto& [typed, completed] : completions) {
@@ -278,6 +289,48 @@ TEST(CommandLine, OtherShellsTakeTheirScripts) {
     }
 }
 
+TEST(CommandLine, ColoursAreForTerminalsUnlessAskedFor) {
+    const auto folder = fresh_folder("colours");
+    write_file(folder / "c.toml", small_configuration);
+    const Words import = {"new", "--out", "my.toml"};
+    const auto has_colour = [&](const Words& more, const std::map<std::string, std::string>& environment) {
+        std::filesystem::remove(folder / "my.toml");
+        Words words = import;
+        words.insert(words.end(), more.begin(), more.end());
+        const auto said = run_program(words, folder, environment);
+        EXPECT_EQ(said.exit_code, 0);
+        EXPECT_THAT(said.standard_error, HasSubstr("my.toml is written"));
+        return said.standard_error.find("\033[") != std::string::npos;
+    };
+    EXPECT_FALSE(has_colour({}, {})); // a pipe
+    EXPECT_TRUE(has_colour({"--color", "always"}, {}));
+    EXPECT_TRUE(has_colour({"--color=always"}, {{"NO_COLOR", "1"}}));
+    EXPECT_FALSE(has_colour({"--color", "never"}, {}));
+    EXPECT_FALSE(has_colour({"--color", "auto"}, {{"NO_COLOR", "1"}}));
+    std::filesystem::remove(folder / "my.toml");
+    EXPECT_EQ(run_program({"new", "--out", "my.toml", "-q"}, folder).standard_error, "");
+}
+
+TEST(CommandLine, NewWritesWhatChecksClean) {
+    const auto folder = fresh_folder("new");
+    const Words instruments[] = {{},
+                                 {"--objective", "20x/0.45", "--light", "ring", "--specimen", "step:10um"},
+                                 {"--objective", "50x/0.8", "--led", "460nm", "--working_distance_mm", "1"},
+                                 {"--objective", "telecentric:2x/0.1", "--specimen", "sphere:1mm"},
+                                 {"--objective", "5x/0.15", "--camera", "2/3:2448x2048", "--specimen", "plane"}};
+    for (const Words& instrument : instruments) {
+        Words words = {"new"};
+        words.insert(words.end(), instrument.begin(), instrument.end());
+        const auto made = run_program(words, folder);
+        ASSERT_EQ(made.exit_code, 0) << made.standard_error;
+        write_file(folder / "my.toml", made.standard_output);
+        const auto check = run_program({"check", "my.toml"}, folder);
+        EXPECT_EQ(check.exit_code, 0) << check.standard_error;
+        EXPECT_THAT(check.standard_output + check.standard_error, testing::Not(HasSubstr("warning")))
+            << fmt::format("{}", fmt::join(instrument, " "));
+    }
+}
+
 Words names_listed(const std::string& topic, const std::filesystem::path& folder) {
     Words names;
     for (const auto& one : nlohmann::json::parse(run_program({"list", topic, "--json"}, folder).standard_output)) {
@@ -292,6 +345,8 @@ TEST(List, NamesWhatAConfigurationTakes) {
     EXPECT_THAT(names_listed("objectives", folder), testing::Contains("10x_0.28"));
     EXPECT_THAT(names_listed("tube-lenses", folder), testing::Contains("200mm"));
     EXPECT_THAT(names_listed("illuminators", folder), testing::Contains("koehler"));
+    EXPECT_THAT(names_listed("cameras", folder), testing::Contains("IMX250"));
+    EXPECT_THAT(names_listed("leds", folder), testing::Contains("green"));
     EXPECT_THAT(names_listed("scatter", folder), testing::Contains("henyey-greenstein"));
     EXPECT_THAT(run_program({"--list", "glasses"}, folder).standard_output,
                 testing::ContainsRegex("N-BK7 +nd = 1.51680.; SCHOTT"));

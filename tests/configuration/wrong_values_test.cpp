@@ -39,6 +39,7 @@ const std::map<std::string, std::string> least_around = {
 
 // What a key needs beside it to be read at all.
 const std::map<std::string, std::string> beside_it = {
+    {"objective.tube_length_mm", "magnification = 10\n"},
     {"specimen.font", "text = \"a\"\n"},
     {"specimen.text_width_mm", "text = \"a\"\n"},
     {"illumination.field.falloff", "kind = \"even\"\n"},

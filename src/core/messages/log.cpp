@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -113,9 +114,23 @@ std::vector<MessagesHeard::Message> MessagesHeard::messages() const {
 void open_log() {
     spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
     spdlog::default_logger()->sinks().push_back(std::make_shared<HeartbeatDelay>());
+    colour_log(LogColours::automatic);
     auto formatter = std::make_unique<spdlog::pattern_formatter>();
     formatter->add_flag<SafeMessage>('*').set_pattern("%^%l%$: %*");
     spdlog::set_formatter(std::move(formatter));
+}
+
+void colour_log(LogColours colours) {
+    const char* const no_colour = std::getenv("NO_COLOR");
+    const bool unwanted = no_colour != nullptr && *no_colour != '\0';
+    const auto mode = colours == LogColours::always              ? spdlog::color_mode::always
+                      : colours == LogColours::never || unwanted ? spdlog::color_mode::never
+                                                                 : spdlog::color_mode::automatic;
+    for (const auto& sink : spdlog::default_logger()->sinks()) {
+        if (auto* coloured = dynamic_cast<spdlog::sinks::stderr_color_sink_mt*>(sink.get())) {
+            coloured->set_color_mode(mode);
+        }
+    }
 }
 
 void log_as_json() {

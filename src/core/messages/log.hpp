@@ -14,6 +14,11 @@ namespace vkfv {
 // Opens the program's log, as lines for people.
 void open_log();
 
+// Colours of the log for people. Automatic: on a terminal that has them, unless the environment's NO_COLOR is set to
+// anything (no-color.org).
+enum class LogColours { automatic, always, never };
+void colour_log(LogColours colours);
+
 // Switches to JSON: each line is an object with "time" (ISO 8601, UTC) and "level" or "event": messages of the log with
 // "text", and the events of core/messages/progress.hpp. Interruptions are lines of JSON too, without a time, which a
 // signal handler cannot format.

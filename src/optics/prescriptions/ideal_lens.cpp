@@ -27,6 +27,14 @@ Prescription ideal_objective(double focal_length, double numerical_aperture) {
     return objective;
 }
 
+Prescription with_front(Prescription objective, double working_distance, const Medium& medium, double index) {
+    PrescribedSurface front;
+    front.medium_after = medium;
+    front.thickness = index / objective.surfaces.front().ideal_power.value() - working_distance;
+    objective.surfaces.insert(objective.surfaces.begin(), front);
+    return objective;
+}
+
 Prescription ideal_koehler(double condenser_focal_length, double field_lens_focal_length) {
     Prescription illuminator = ideal_lens(condenser_focal_length);
     illuminator.name = fmt::format("ideal Köhler illuminator, condenser f = {:g} mm, field lens f = {:g} mm",

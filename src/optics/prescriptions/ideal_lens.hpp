@@ -12,6 +12,11 @@ Prescription ideal_lens(double focal_length);
 // aperture's cone the radius focal_length * numerical_aperture (mm).
 Prescription ideal_objective(double focal_length, double numerical_aperture);
 
+// An ideal objective whose front is a plane without effect on light, at the working distance (mm) from its front focal
+// plane. `medium` is below it, of that index at the reference wavelength. With a long working distance the front lies
+// behind the lens that stands for the whole objective: light goes back to it, as to a principal plane.
+Prescription with_front(Prescription objective, double working_distance, const Medium& medium, double index);
+
 // Köhler illumination by two ideal lenses, in the direction from the source. The source stands in the front focal plane
 // of the condenser, the field stop in the condenser's back focal plane, which is the front focal plane of the field
 // lens. So each point of the source lights the whole field stop evenly, and the source is imaged into the back focal
