@@ -30,6 +30,7 @@ struct StackScene {
     std::vector<double> positions; // focal heights, mm
     specimen::Specimen specimen;
     optics::Instrument instrument;
+    std::vector<Warning> warnings; // of both and of the plan; the log has them
 };
 
 // A stack that is evaluated while its images come. What no image is needed for is made beside them.

@@ -2,6 +2,7 @@
 // Inside mm and rad, wavelengths in um.
 #pragma once
 
+#include "core/messages/warning.hpp"
 #include "optics/aim/apertures.hpp"
 #include "optics/instrument/instrument.hpp"
 
@@ -86,7 +87,7 @@ struct ImageQuality {
 
     std::vector<Clipping> axis_clipping;
     std::vector<Clipping> corner_clipping;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 // `instrument` as assemble() made it of `description`.
