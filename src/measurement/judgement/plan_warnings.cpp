@@ -30,7 +30,7 @@ struct Plan {
     double z_start() const { return configuration.scan->z_start; }
 };
 
-std::string um(double mm, Rounding rounding = Rounding::nearest) {
+std::string um_text(double mm, Rounding rounding = Rounding::nearest) {
     return number_text(mm * um_per_mm, rounding);
 }
 
@@ -43,8 +43,8 @@ void warn_of_depth(const Plan& plan, std::vector<Warning>& warnings) {
     const double wanted = std::max(plan.first() + 2 * plan.depth, (seen ? plan.relief.highest : 0) + plan.depth);
     warnings.push_back({.code = "scan-in-depth-of-field",
                         .key = "scan.z_stop_um",
-                        .value = um(plan.z_stop()),
-                        .works = um(wanted, Rounding::up),
+                        .value = um_text(plan.z_stop()),
+                        .works = um_text(wanted, Rounding::up),
                         .sentence = fmt::format(
                             "The scan, {:.4g} um from its first image to its last, lies inside the depth of field, "
                             "{:.4g} um: no image is out of focus, and focus has no maximum. Scan a depth of field "
@@ -59,8 +59,8 @@ void warn_of_step(const Plan& plan, std::vector<Warning>& warnings) {
         warnings.push_back(
             {.code = "coarse-steps",
              .key = "scan.z_step_um",
-             .value = um(plan.z_step()),
-             .works = um(coarsest, Rounding::down),
+             .value = um_text(plan.z_step()),
+             .works = um_text(coarsest, Rounding::down),
              .sentence = fmt::format("The scan's step, {:.4g} um, is coarser than half the depth of field, {:.4g} "
                                      "um: peaks of focus fall between images.",
                                      plan.z_step() * um_per_mm, coarsest * um_per_mm)});
@@ -88,15 +88,15 @@ void warn_of_range(const Plan& plan, std::vector<Warning>& warnings) {
     if (lowest < plan.first()) {
         warnings.push_back({.code = code,
                             .key = "scan.z_start_um",
-                            .value = um(plan.z_start()),
-                            .works = um(lowest - 0.5 * plan.depth, Rounding::down),
+                            .value = um_text(plan.z_start()),
+                            .works = um_text(lowest - 0.5 * plan.depth, Rounding::down),
                             .sentence = sentence});
     }
     if (highest > plan.last()) {
         warnings.push_back({.code = code,
                             .key = "scan.z_stop_um",
-                            .value = um(plan.z_stop()),
-                            .works = um(highest + 0.5 * plan.depth + plan.z_step(), Rounding::up),
+                            .value = um_text(plan.z_stop()),
+                            .works = um_text(highest + 0.5 * plan.depth + plan.z_step(), Rounding::up),
                             .sentence = sentence});
     }
 }
@@ -128,8 +128,8 @@ void warn_of_smoothing(const Plan& plan, const optics::Instrument& instrument, s
         const double deviation = focus_curve_deviation(plan.configuration, plan.first_order);
         warnings.push_back({.code = "fine-steps",
                             .key = "scan.z_step_um",
-                            .value = um(plan.z_step()),
-                            .works = um(deviation / topography::most_smoothing_steps, Rounding::up),
+                            .value = um_text(plan.z_step()),
+                            .works = um_text(deviation / topography::most_smoothing_steps, Rounding::up),
                             .sentence = fmt::format(
                                 "The scan's steps are so fine that the average along z, "
                                 "topography.smoothing_steps, ends at its largest, {:g} steps, below what suits the "

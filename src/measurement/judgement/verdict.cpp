@@ -29,7 +29,7 @@ const Warning* first_of(const std::vector<Warning>& warnings, const std::array<c
     return found == warnings.end() ? nullptr : &*found;
 }
 
-std::string um(double mm) {
+std::string text_in_um(double mm) {
     return fmt::format("{:.2g} um", mm * um_per_mm);
 }
 
@@ -86,17 +86,23 @@ Verdict verdict_on(const Configuration& configuration, const optics::Instrument&
         sentences.push_back(
             fmt::format("An instrument of {:.3g}x/{:.3g} whose pixels see {}. What can be measured with it takes {}.",
                         std::abs(first_order.magnification), first_order.numerical_aperture,
-                        um(first_order.pixel_pitch), !configuration.specimen ? "a [specimen]" : "a [scan]"));
+                        text_in_um(first_order.pixel_pitch), !configuration.specimen ? "a [specimen]" : "a [scan]"));
         return verdict;
     }
-    sentences.push_back(
-        fmt::format("{:.0f} % of the field can be measured: the specimen is there, within the scan, and "
-                    "no steeper than {:.0f} deg, up to which its light comes back. {}.",
-                    100 * expected->measurable_share, expected->steepest / radians_per_degree, slopes_text(*expected)));
+    const std::string steepest = std::isnan(expected->steepest)
+                                     ? std::string("though no light of a facet comes back")
+                                     : fmt::format("and no steeper than {:.0f} deg, up to which its light comes back",
+                                                   expected->steepest / radians_per_degree);
+    const std::string slopes = slopes_text(*expected);
+    sentences.push_back(fmt::format("{:.0f} % of the field can be in focus: the specimen is there, within the scan, {}."
+                                    "{}",
+                                    100 * expected->measurable_share, steepest,
+                                    slopes.empty() ? "" : " " + slopes + "."));
     if (std::isfinite(expected->height_noise) && verdict.measurable != Verdict::Measurable::no) {
         sentences.push_back(fmt::format(
             "Expected of a height: noise {}, standard uncertainty {}. Waves of {} keep half of their height.",
-            um(expected->height_noise), um(expected->height_uncertainty), um(expected->lateral_resolution)));
+            text_in_um(expected->height_noise), text_in_um(expected->height_uncertainty),
+            text_in_um(expected->lateral_resolution)));
     }
     if (std::isfinite(expected->ray_noise)) {
         sentences.push_back(fmt::format(
