@@ -167,10 +167,10 @@ INSTANTIATE_TEST_SUITE_P(
                      "source.elevation_deg",
                      "partly"},
         PlantedFault{
-            "MemoryThatIsNotThere", &sound_configuration, {"detector.pixels=60000"}, "memory", "detector.pixels", "no"},
+            "MemoryThatIsNotThere", &sound_configuration, {"detector.pixels=16384"}, "memory", "detector.pixels", "no"},
         PlantedFault{"RayNoiseWithoutACamera",
                      &sound_configuration,
-                     {"trace.rays=4096"},
+                     {"trace.rays=2e4"},
                      "ray-noise-without-camera",
                      "trace.rays",
                      nullptr},

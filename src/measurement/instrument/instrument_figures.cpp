@@ -379,6 +379,7 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
     InstrumentFigures figures{.groups = groups_of(configuration, instrument, quality),
                               .scan = {},
                               .specimen = {},
+                              .verdict = {},
                               .warnings = instrument.warnings};
     const WavefrontQualities wavefront = wavefronts_at(instrument, quality);
     figures.groups.push_back(aberrations(first_order, quality, wavefront));

@@ -32,6 +32,8 @@ constexpr std::uint64_t rays_of_forward_probe = 100'000;
 
 struct Sample {
     trace::Image image;
+    trace::Image defocused; // with the focal plane that much higher
+    double defocus = 0;
     std::vector<bool> in_focus; // pixels whose surface is within the focus
     double rays_per_pixel = 0;
     double pitch = 0;
@@ -88,9 +90,13 @@ std::optional<Sample> sample_of(const Configuration& configuration, const specim
         const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
         std::ranges::nth_element(heights, middle);
         const double height = *middle;
-        const auto instrument = assemble_silently(part, specimen, std::span(&height, 1));
+        constexpr double share_of_deviation = 0.5; // texture is well above noise there, and well below its maximum
+        sample.defocus = share_of_deviation * curve_deviation;
+        const std::array heights_of_focus = {height, height + sample.defocus};
+        const auto instrument = assemble_silently(part, specimen, heights_of_focus);
         const auto tracer = trace::make_host_tracer(instrument, specimen, part.trace);
-        sample.image = tracer->expose(height, 0);
+        sample.image = tracer->expose(heights_of_focus[0], 0);
+        sample.defocused = tracer->expose(heights_of_focus[1], 1);
         sample.rays_per_pixel = static_cast<double>(sample.image.rays) / static_cast<double>(pixels.count());
         for (const double one : truth.height.values) {
             sample.in_focus.push_back(std::abs(one - height) <= 0.5 * curve_deviation);
@@ -202,12 +208,11 @@ struct Texture {
 };
 
 // variance: of the sample's pixels over their squared mean.
-Texture texture_of_sample(const Sample& sample, const topography::TopographyOptions& options,
-                          const NoiseOfMeasure& noise, const std::optional<optics::Diffraction>& blur,
-                          double variance) {
+Texture texture_of_image(const trace::Image& image, const Sample& sample, const topography::TopographyOptions& options,
+                         const NoiseOfMeasure& noise, const std::optional<optics::Diffraction>& blur, double variance) {
     const topography::FocusWindow window(options.window_px, options.window_shape);
-    Grid<float> light(sample.image.flux.columns, sample.image.flux.rows);
-    std::ranges::copy(sample.image.flux.values, light.values.begin());
+    Grid<float> light(image.flux.columns, image.flux.rows);
+    std::ranges::copy(image.flux.values, light.values.begin());
     // Small numbers of watts, squared, would leave a float's range.
     const double mean =
         std::accumulate(light.values.begin(), light.values.end(), 0.0) / static_cast<double>(light.values.size());
@@ -240,6 +245,16 @@ Texture texture_of_sample(const Sample& sample, const topography::TopographyOpti
     constexpr double of_model = 0.1; // of the noise's energy, by magnitudes that add up as if they were energies
     return {.energy = found - variance * noise.energy,
             .error = std::hypot(scatter, of_model * variance * noise.energy)};
+}
+
+// The deviation w of a focus curve whose texture fades as S(z) = S(0) exp(-z^2 / w^2): fine waves fade sooner than
+// those that planned, the deviation that the optics tell, is of. Within a factor of what is planned, since a sample is
+// small.
+double faded_deviation(double planned, double defocus, const Texture& in_focus, const Texture& out_of_focus) {
+    constexpr double least = 0.4, most = 1.0;
+    const double left = out_of_focus.energy / in_focus.energy;
+    const double found = left > 0 && left < 1 ? defocus / std::sqrt(-std::log(left)) : left > 0 ? planned : 0.0;
+    return std::clamp(found, least * planned, most * planned);
 }
 
 // Relative variance of a pixel by the rays of an image.
@@ -399,12 +414,16 @@ Expectation expect(const Configuration& configuration, const optics::Instrument&
     }
     const auto blur =
         blur_of(configuration, instrument, {.columns = sample->image.flux.columns, .rows = sample->image.flux.rows});
-    const Texture texture = texture_of_sample(*sample, options, noise, blur, variance_of_sample * noise.kept);
+    const Texture texture =
+        texture_of_image(sample->image, *sample, options, noise, blur, variance_of_sample * noise.kept);
     expected.texture = std::sqrt(std::max(0.0, texture.energy) / noise.energy);
     expected.texture_error = std::sqrt(texture.error / noise.energy);
     if (!(texture.energy > 0)) {
         return expected;
     }
+    const Texture fading =
+        texture_of_image(sample->defocused, *sample, options, noise, blur, variance_of_sample * noise.kept);
+    expected.curve_deviation = faded_deviation(expected.curve_deviation, sample->defocus, texture, fading);
     expect_height_noise({.width = expected.curve_deviation / step, .smoothing = options.smoothing_steps.value_or(0)},
                         texture.energy, variance, noise, step, expected);
     const ImageSize pixels = configuration.instrument.detector_pixels;
@@ -422,8 +441,8 @@ Expectation expect(const Configuration& configuration, const optics::Instrument&
                                         2);
     const double grain =
         std::min(window_pixels, configuration.trace.waves ? std::max(noise.grain, airy_pixels) : noise.grain);
-    const double by_relief =
-        relief_in_windows(heights, options.window_px * first_order.pixel_pitch) * std::sqrt(2 * grain / window_pixels);
+    const double by_relief = relief_in_windows(heights, options.window_px * first_order.pixel_pitch) *
+                             std::sqrt(1 + 2 * grain / window_pixels);
     const double curved = configuration.flatness_file.empty() ? std::max(std::abs(first_order.field_curvature),
                                                                          std::abs(first_order.field_curvature_corner)) /
                                                                     std::sqrt(12.0)

@@ -12,7 +12,7 @@
 // Texture. The focus measure F over the window has F^2 = S + N: S of texture, N = v N_1 of noise, N_1 that of white
 // noise of variance 1. N_1 is found by the measure itself, on an image of noise, and S is what is left of F^2.
 //
-// Heights. In steps of the scan: focus curves are Gaussians of deviation w (focus_curve_deviation()), both averages
+// Heights. In steps of the scan: focus curves are Gaussians of deviation w, both averages
 // along z have weights of deviation s. The averaged curve has the deviation W, W^2 = w^2 + 2 s^2, and the height A =
 // sqrt(S) w / W. Its maximum moves by the noise of its slope over its curvature A / W^2, so that with the weights c of
 // the slope of a curve averaged by a, c_k = (a_(k-1) - a_(k+1)) / 2, the correlation rho of averaged noise, rho(d) =
@@ -23,10 +23,10 @@
 //   rho(0)),
 //
 // with rho at k - l: JCGM 100:2008, 5.2.2, of the place of a maximum; the covariances are those of curve_noise.hpp. The
-// uncertainty counts besides, as independent: relief within a window of deviation r, of which texture weighs the places
-// unevenly, r sqrt(2 a / n) with n pixels in the window and a those of a grain of the measure's responses; the curved
-// field (p / sqrt(12) of p peak to valley, a uniform distribution); and what images of waves hide
-// (PhaseLimits::height_uncertainty()).
+// uncertainty counts besides, as independent: relief within a window of deviation r, which the height of a point leaves
+// out and of which texture weighs the places unevenly, r sqrt(1 + 2 a / n) with n pixels in the window and a those of a
+// grain of the measure's responses; the curved field (p / sqrt(12) of p peak to valley, a uniform distribution); and
+// what images of waves hide (PhaseLimits::height_uncertainty()).
 //
 // It is what a stack of this kind has in the mean; the run itself tells the noise and uncertainty of each of its
 // points.
