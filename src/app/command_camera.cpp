@@ -130,9 +130,7 @@ void run_camera(const CommandOptions& options) {
     }
     results.write_checksums();
     for (const auto& warnings : {measurement::warnings_of(camera), measurement::warnings_of(measurement)}) {
-        for (const auto& warning : warnings) {
-            spdlog::warn(warning);
-        }
+        log_warnings(warnings);
     }
     fmt::print("{}", measurement::summary(measurement));
 }

@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 #include "core/messages/error.hpp"
 #include "measurement/instrument/instrument_report.hpp"
+#include "measurement/judgement/verdict.hpp"
+#include "measurement/scene/warning_json.hpp"
 #include "measurement/scene/wave_devices.hpp"
 #include "measurement/stack/forecast.hpp"
 
@@ -15,6 +17,7 @@ namespace {
 
 struct CheckOptions {
     bool forecast = false;
+    bool all = false;
 };
 
 } // namespace
@@ -25,10 +28,14 @@ Command check_command() {
                              .description = "Light, noise, time, memory and disk that it will take, by a probe on the "
                                             "device",
                              .target = into(&CheckOptions::forecast)};
+    const Option all = {.name = "--all",
+                        .value = "",
+                        .description = "All figures of the instrument, below those that matter at first",
+                        .target = into(&CheckOptions::all)};
     return {.name = "check",
-            .summary = "Validate and print first-order data; needs no device but for --forecast",
+            .summary = "Judge what can be measured, how well and what limits it; needs no device but for --forecast",
             .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
-            .options = together({configuration_options(), {json_option(), out_option("Output folder"), forecast}}),
+            .options = together({configuration_options(), {json_option(), out_option("Output folder"), forecast, all}}),
             .run = run_check,
             .example = "vkfv check assets/stacks/demo.toml --forecast"};
 }
@@ -44,23 +51,27 @@ void run_check(const CommandOptions& options) {
     auto report = measurement::instrument_report(configuration, options.file);
     if (const auto cells = report.json.find("wave_cells"); cells != report.json.end()) {
         // The report is kept from run to run; devices come and go.
-        for (const auto& warning : measurement::wave_warnings_of_device(configuration, cells->get<int>(),
-                                                                        report.json["wave_tiles"].get<int>())) {
-            report.json["warnings"].push_back(warning);
-            report.text += fmt::format("  warning: {}\n", warning);
-        }
+        append(report.warnings, measurement::wave_warnings_of_device(configuration, cells->get<int>(),
+                                                                     report.json["wave_tiles"].get<int>()));
     }
     std::optional<measurement::Forecast> forecast;
     if (with_forecast) {
         forecast = measurement::forecast(configuration);
+        report.verdict.sentences.push_back(measurement::time_sentence(*forecast));
+        append(report.warnings, forecast->warnings);
     }
     if (options.json) {
+        report.json["verdict"] = measurement::json_of(report.verdict);
+        report.json["warnings"] = measurement::json_of(report.warnings);
         if (forecast) {
             report.json["forecast"] = measurement::json_of(*forecast);
         }
         fmt::print("{}\n", report.json.dump(2));
     } else {
-        fmt::print("{}{}", report.text, forecast ? measurement::summary(*forecast) : "");
+        fmt::print("{}{}{}{}", measurement::verdict_text(options.file.string(), report.verdict),
+                   measurement::warnings_text(report.warnings),
+                   options.of<CheckOptions>().all ? report.all_figures : report.figures_that_matter,
+                   forecast ? measurement::summary(*forecast) : "");
     }
     if (forecast && !forecast->fits()) {
         throw RunError("This stack does not fit on the host's memory or the disk. Take fewer images or pixels, another "

@@ -48,7 +48,7 @@ void run_image(const CommandOptions& options);
 // Images or stacks for every combination of the parameters in [sweep], with a table, charts and a contact sheet;
 // continues one that was interrupted.
 void run_sweep(const CommandOptions& options);
-// Validates, and prints the instrument's first-order data; needs no device.
+// Judges the configuration, and prints warnings and figures of the instrument; opens no device but for a forecast.
 void run_check(const CommandOptions& options);
 // Given rays through the imaging train, as CSV.
 void run_trace_rays(const CommandOptions& options);

@@ -28,7 +28,11 @@ nlohmann::json check(const std::string& configuration, const std::vector<std::st
 }
 
 std::vector<std::string> warnings_of(const nlohmann::json& report) {
-    return report["warnings"];
+    std::vector<std::string> sentences;
+    for (const auto& warning : report["warnings"]) {
+        sentences.push_back(warning["sentence"]);
+    }
+    return sentences;
 }
 
 const std::vector<std::string> figures = {"efl_objective_mm",
@@ -101,7 +105,7 @@ TEST(Check, EveryMicroscopeHasEveryFigure) {
 TEST(Check, TextHasTheSameFiguresWithinItsWidth) {
     const auto folder = fresh_folder("check_text");
     write_file(folder / "c.toml", small_configuration);
-    const auto result = run_program({"--check", "c.toml"}, folder);
+    const auto result = run_program({"--check", "c.toml", "--all"}, folder);
     ASSERT_EQ(result.exit_code, 0) << result.standard_error;
     for (const auto& name : figures) {
         EXPECT_THAT(result.standard_output, HasSubstr("  " + name + " "));

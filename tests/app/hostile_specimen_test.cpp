@@ -123,10 +123,11 @@ TEST(HostileSpecimen, LightThatGoesAstrayIsToldOf) {
     const auto dark = run("9", "10", "centre = false\n", {"--image", "c.toml", "--z", "0", "--device", "host"});
     EXPECT_EQ(dark.exit_code, 0) << dark.standard_error;
     EXPECT_THAT(dark.standard_error, HasSubstr("The detector does not see the specimen"));
-    EXPECT_THAT(dark.standard_error, HasSubstr("No light reaches the detector. Most of it ends as \""));
+    EXPECT_THAT(dark.standard_error, HasSubstr("No ray of 2000 arrived at the detector: at most "));
+    EXPECT_THAT(dark.standard_error, HasSubstr(" Most of it ends as \""));
     EXPECT_THAT(dark.standard_error, HasSubstr("source.radius_mm, specimen.size_mm, specimen.unit"));
     const auto stack = run("9", "10", "centre = false\n", {"--stack", "c.toml", "--device", "host", "--rays", "200"});
-    EXPECT_THAT(stack.standard_error, HasSubstr("No light reaches the detector in any image"));
+    EXPECT_THAT(stack.standard_error, HasSubstr("No ray of 1000 arrived at the detector: at most "));
 }
 
 // The wrong twin: a specimen in its place is not warned of.
@@ -135,7 +136,7 @@ TEST(HostileSpecimen, LightInItsPlaceIsNotToldOf) {
          {std::vector<std::string>{"--check", "c.toml"}, {"--image", "c.toml", "--z", "0", "--device", "host"}}) {
         const auto result = checked(small_configuration, arguments);
         EXPECT_EQ(result.exit_code, 0) << result.standard_error;
-        EXPECT_THAT(result.standard_output + result.standard_error, Not(HasSubstr("No light reaches")));
+        EXPECT_THAT(result.standard_output + result.standard_error, Not(HasSubstr("arrived at the detector")));
         EXPECT_THAT(result.standard_output + result.standard_error, Not(HasSubstr("falls beside the specimen")));
         EXPECT_THAT(result.standard_output + result.standard_error, Not(HasSubstr("of the field of view: it is")));
     }

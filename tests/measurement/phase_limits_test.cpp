@@ -17,6 +17,10 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+std::vector<std::string> sentences_of_limits(const PhaseLimits& limits) {
+    return sentences_of(warnings_of(limits));
+}
+
 constexpr double aperture = 0.4;
 constexpr double wavelength = 0.55e-3; // mm
 
@@ -163,11 +167,11 @@ TEST(PhaseLimits, ARingsLightAtThePupilsRimIsNoFilledPupil) {
     const auto narrow = limits(64, 0.05);
     EXPECT_NEAR(narrow.contrast_error, 0.237, of_cells);
     EXPECT_GT(narrow.scatter_fill, 0.9);
-    EXPECT_THAT(warnings_of(narrow), ElementsAre(HasSubstr("a ring light nearer to the axis")));
+    EXPECT_THAT(sentences_of_limits(narrow), ElementsAre(HasSubstr("a ring light nearer to the axis")));
     EXPECT_EQ(narrow.height_uncertainty(), narrow.depth_of_field);
     EXPECT_NEAR(limits(45, 0.05).contrast_error, 0.099, of_cells);
     EXPECT_NEAR(limits(64, 0.2).contrast_error, 0.029, of_cells);
-    EXPECT_THAT(warnings_of(limits(64, 0.2)), IsEmpty());
+    EXPECT_THAT(sentences_of_limits(limits(64, 0.2)), IsEmpty());
     const auto description = ring_microscope(64 * degree);
     const auto of_mirror = phase_limits(description, optics::assemble(description), sinusoid(0.001, mirror));
     EXPECT_EQ(of_mirror.contrast_error, 1) << "no light arrives but by slopes";
@@ -206,16 +210,17 @@ TEST(PhaseLimits, TellWhereImagesOfWavesDoNotHold) {
     const auto unfilled = HasSubstr("spread unevenly over the objective's pupil");
     for (const double amplitude : {50e-6, 10e-6}) { // 50 and 10 nm
         const auto limits = limits_of(1.02, sinusoid(amplitude, mirror));
-        EXPECT_THAT(warnings_of(limits), ElementsAre(phase));
+        EXPECT_THAT(sentences_of_limits(limits), ElementsAre(phase));
         EXPECT_EQ(limits.height_uncertainty(), limits.depth_of_field);
-        EXPECT_THAT(warnings_of(limits_of(0.3, sinusoid(amplitude, mirror))), ElementsAre(unfilled, phase));
+        EXPECT_THAT(sentences_of_limits(limits_of(0.3, sinusoid(amplitude, mirror))), ElementsAre(unfilled, phase));
     }
-    EXPECT_THAT(warnings_of(limits_of(0.2, sinusoid(0, mirror))), ElementsAre(unfilled)) << "a grating of reflectance";
+    EXPECT_THAT(sentences_of_limits(limits_of(0.2, sinusoid(0, mirror))), ElementsAre(unfilled))
+        << "a grating of reflectance";
     const auto holds = limits_of(1.02, sinusoid(0.002, mirror));
-    EXPECT_THAT(warnings_of(holds), IsEmpty()) << "relief of 2 um, lit by a filled pupil";
+    EXPECT_THAT(sentences_of_limits(holds), IsEmpty()) << "relief of 2 um, lit by a filled pupil";
     EXPECT_EQ(holds.height_uncertainty(), 0);
-    EXPECT_THAT(warnings_of(limits_of(0.3, sinusoid(50e-6, of_model("lambertian")))), IsEmpty());
-    EXPECT_THAT(warnings_of(limits_of(1.02, sinusoid(0, mirror))), IsEmpty()) << "a flat mirror, filled";
+    EXPECT_THAT(sentences_of_limits(limits_of(0.3, sinusoid(50e-6, of_model("lambertian")))), IsEmpty());
+    EXPECT_THAT(sentences_of_limits(limits_of(1.02, sinusoid(0, mirror))), IsEmpty()) << "a flat mirror, filled";
 }
 
 } // namespace

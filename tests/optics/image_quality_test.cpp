@@ -339,14 +339,15 @@ TEST(ImageQuality, OfASpectrum) {
 TEST(Warnings, OfPixelsCoarserAndFinerThanTheOptics) {
     auto description = test::microscope();
     description.detector_width = 1.28; // 2 um a pixel in the object; lambda / NA is 2.12 um
-    EXPECT_THAT(image_quality(description, assemble(description)).warnings, IsEmpty());
+    EXPECT_THAT(sentences_of(image_quality(description, assemble(description)).warnings), IsEmpty());
     description.detector_pixels = ImageSize::square(60);
-    EXPECT_THAT(image_quality(description, assemble(description)).warnings,
+    EXPECT_THAT(sentences_of(image_quality(description, assemble(description)).warnings),
                 Contains(HasSubstr("coarser than the optics")));
     description.detector_pixels = ImageSize::square(980); // 0.1306 um; a tenth of Airy's radius is 0.1293 um
-    EXPECT_THAT(image_quality(description, assemble(description)).warnings, IsEmpty());
+    EXPECT_THAT(sentences_of(image_quality(description, assemble(description)).warnings), IsEmpty());
     description.detector_pixels = ImageSize::square(1000);
-    EXPECT_THAT(image_quality(description, assemble(description)).warnings, Contains(HasSubstr("far finer")));
+    EXPECT_THAT(sentences_of(image_quality(description, assemble(description)).warnings),
+                Contains(HasSubstr("far finer")));
 }
 
 TEST(Warnings, NameWhatClipsTheCone) {
@@ -355,7 +356,7 @@ TEST(Warnings, NameWhatClipsTheCone) {
     auto narrowed = description;
     // On the axis the beam fills 5.56 mm behind the objective.
     narrowed.tube_lens.surfaces.front().semi_diameter = 5;
-    EXPECT_THAT(image_quality(narrowed, assemble(narrowed)).warnings,
+    EXPECT_THAT(sentences_of(image_quality(narrowed, assemble(narrowed)).warnings),
                 Contains(::testing::AllOf(HasSubstr("on the axis"), HasSubstr("(200mm 1) (100 % of the rim)"))));
     // Far out the front of the tube lens cuts one side.
     auto wide = description;
@@ -363,8 +364,9 @@ TEST(Warnings, NameWhatClipsTheCone) {
     wide.detector_pixels = ImageSize::square(1100);
     wide.tube_lens.surfaces.front().semi_diameter = 7;
     const auto quality = image_quality(wide, assemble(wide));
-    EXPECT_THAT(quality.warnings, Contains(::testing::AllOf(HasSubstr("field's corner"), HasSubstr("200mm 1"))));
-    EXPECT_THAT(quality.warnings, Not(Contains(HasSubstr("on the axis"))));
+    EXPECT_THAT(sentences_of(quality.warnings),
+                Contains(::testing::AllOf(HasSubstr("field's corner"), HasSubstr("200mm 1"))));
+    EXPECT_THAT(sentences_of(quality.warnings), Not(Contains(HasSubstr("on the axis"))));
     EXPECT_LT(quality.corner.relative_light, 0.9);
 }
 

@@ -420,17 +420,17 @@ TEST(Instrument, Warns) {
     EXPECT_TRUE(assemble(test::microscope()).warnings.empty());
     auto description = test::microscope();
     description.source.radius = 0.9;
-    EXPECT_THAT(assemble(description).warnings, ::testing::ElementsAre(HasSubstr("does not fill")));
+    EXPECT_THAT(sentences_of(assemble(description).warnings), ::testing::ElementsAre(HasSubstr("does not fill")));
     description = test::microscope();
     description.field_stop_radius = 0.6; // 0.080 mm on the specimen; the corners are at 0.092 mm
-    EXPECT_THAT(assemble(description).warnings, ::testing::ElementsAre(HasSubstr("does not cover")));
+    EXPECT_THAT(sentences_of(assemble(description).warnings), ::testing::ElementsAre(HasSubstr("does not cover")));
     description = test::microscope();
     description.illumination_to_objective = 100;
-    EXPECT_THAT(assemble(description).warnings, ::testing::ElementsAre(HasSubstr("instead of into it")));
+    EXPECT_THAT(sentences_of(assemble(description).warnings), ::testing::ElementsAre(HasSubstr("instead of into it")));
     description = test::microscope();
     description.detector_width = 40;
     description.field_stop_radius.reset();
-    EXPECT_THAT(assemble(description).warnings, ::testing::ElementsAre(HasSubstr("clip their cones")));
+    EXPECT_THAT(sentences_of(assemble(description).warnings), ::testing::ElementsAre(HasSubstr("clip their cones")));
 }
 
 TEST(Instrument, RefusesPartsThatDoNotFit) {

@@ -163,7 +163,7 @@ class RunTest(unittest.TestCase):
                 shared.configuration(), 0, out=shared.folder() / "grey.tif", camera={"preset": "IMX250"}, **SMALL
             )
         self.assertEqual(image.pixels.unit, "DN")
-        self.assertIn("are saturated", "".join(image.figures["warnings"]))
+        self.assertIn("are saturated", "".join(warning["sentence"] for warning in image.figures["warnings"]))
         validate(image.figures, "image")
 
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 namespace vkfv {
 
@@ -14,6 +15,13 @@ struct ImageSize {
     constexpr std::size_t count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
     constexpr bool operator==(const ImageSize&) const = default;
 };
+
+// The size as the key detector.pixels has it: "64", "[64, 48]".
+inline std::string text_of(ImageSize pixels) {
+    return pixels.columns == pixels.rows
+               ? std::to_string(pixels.columns)
+               : "[" + std::to_string(pixels.columns) + ", " + std::to_string(pixels.rows) + "]";
+}
 
 // A regular grid: column i and row j are at (x0 + i * pitch_x, y0 + j * pitch_y), in mm.
 struct PixelGrid {

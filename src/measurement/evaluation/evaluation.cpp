@@ -76,7 +76,7 @@ std::string uncertainty_text(const Evaluation& evaluation) {
         text += fmt::format("; {:.1f} % of the points are more than {:g} times theirs from the truth",
                             100 * evaluation.beyond_uncertainty.value(), coverage_factor);
     }
-    return text + "\n";
+    return text;
 }
 
 struct Reason {
@@ -85,7 +85,7 @@ struct Reason {
 };
 
 // What kept points out, with what helps, for each reason that holds for at least a twentieth of them.
-std::string reasons_text(const Evaluation& evaluation) {
+std::vector<std::string> reasons_of(const Evaluation& evaluation) {
     using topography::PointState;
     const auto& options = evaluation.options;
     const auto& state = evaluation.topography.state.values;
@@ -111,14 +111,27 @@ std::string reasons_text(const Evaluation& evaluation) {
                                                     : "",
              options.most_peaks)}};
     constexpr double least_share = 0.05;
-    std::string text;
+    std::vector<std::string> found;
     for (const auto& [which, sentence] : reasons) {
         const double share = static_cast<double>(std::ranges::count(state, which)) / static_cast<double>(state.size());
         if (share >= least_share) {
-            text += fmt::format("  {:.1f} % {}\n", 100 * share, sentence);
+            found.push_back(fmt::format("{:.1f} % {}", 100 * share, sentence));
         }
     }
-    return text;
+    return found;
+}
+
+std::string measured_text(double share) {
+    return fmt::format("measured {:.1f} % of the points", 100 * share);
+}
+
+// Empty where chance is no more than was asked.
+std::string chance_text(const Evaluation& evaluation) {
+    const double rate = evaluation.topography.stack.limit.rate;
+    return rate < 1 && rate > 2 * evaluation.options.false_peak_rate
+               ? fmt::format("with the images in random order {:.2g} % would pass: so few images tell no more",
+                             100 * rate)
+               : std::string();
 }
 
 // Enough to see how curves differ over the field; values of long stacks are thinned out, 32 MB at most.
@@ -311,13 +324,33 @@ Evaluation StackEvaluation::finish(double pitch, const surface::Form& form, cons
     return std::move(evaluation_);
 }
 
+Verdict verdict_of(const Evaluation& evaluation) {
+    constexpr double nearly_all = 0.9;
+    const double measured = surface::height_parameters(evaluation.topography.height).measured_share;
+    Verdict verdict{.measurable = measured >= nearly_all ? Verdict::Measurable::yes
+                                  : measured > 0         ? Verdict::Measurable::partly
+                                                         : Verdict::Measurable::no,
+                    .sentences = {measured_text(measured)}};
+    for (const std::string& reason : reasons_of(evaluation)) {
+        verdict.sentences.push_back(reason);
+    }
+    if (std::string chance = chance_text(evaluation); !chance.empty()) {
+        verdict.sentences.push_back(std::move(chance));
+    }
+    if (measured > 0) {
+        verdict.sentences.push_back(uncertainty_text(evaluation));
+    }
+    return verdict;
+}
+
 std::string summary(const Evaluation& evaluation) {
     const double measured = surface::height_parameters(evaluation.topography.height).measured_share;
-    std::string text = fmt::format("measured {:.1f} % of the points\n", 100 * measured) + reasons_text(evaluation);
-    const auto& stack = evaluation.topography.stack;
-    if (const double rate = stack.limit.rate; rate < 1 && rate > 2 * evaluation.options.false_peak_rate) {
-        text += fmt::format("with the images in random order {:.2g} % would pass: so few images tell no more\n",
-                            100 * rate);
+    std::string text = measured_text(measured) + "\n";
+    for (const std::string& reason : reasons_of(evaluation)) {
+        text += "  " + reason + "\n";
+    }
+    if (const std::string chance = chance_text(evaluation); !chance.empty()) {
+        text += chance + "\n";
     }
     if (!(measured > 0)) {
         return text;
@@ -342,7 +375,7 @@ std::string summary(const Evaluation& evaluation) {
                                                             : ("form " + form_name(evaluation.band.form) + ":").c_str(),
                     *evaluation.deviation);
     }
-    text += uncertainty_text(evaluation);
+    text += uncertainty_text(evaluation) + "\n";
     if (evaluation.filtered) {
         text += text_of(band_text(evaluation.band).c_str(), evaluation.filtered->deviation);
     }

@@ -3,6 +3,7 @@
 
 #include "configuration/configuration.hpp"
 #include "measurement/scene/known_truth.hpp"
+#include "measurement/scene/verdict.hpp"
 #include "measurement/surface/standard.hpp"
 #include "optics/instrument/field_curvature.hpp"
 #include "optics/waves/diffraction.hpp"
@@ -121,6 +122,10 @@ class StackEvaluation {
     int rows_ = 0;
     Evaluation evaluation_;
 };
+
+// What was measured, why the rest was not, and how uncertain it is: the sentences of the summary that judge. All counts
+// as measured from nine tenths of the points on.
+Verdict verdict_of(const Evaluation& evaluation);
 
 // The figures as a text of a few lines.
 std::string summary(const Evaluation& evaluation);

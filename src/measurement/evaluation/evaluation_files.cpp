@@ -3,6 +3,7 @@
 #include "core/files/file.hpp"
 #include "measurement/evaluation/evaluation_figures.hpp"
 #include "measurement/evaluation/stack_page.hpp"
+#include "measurement/scene/warning_json.hpp"
 #include "report/layout.hpp"
 #include "scan/store.hpp"
 
@@ -50,6 +51,8 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     auto results =
         results_of(evaluation, page.plain.figures, page.diffracted ? page.diffracted->figures : std::vector<Figures>());
     results.update(stack.origin);
+    results["verdict"] = json_of(verdict_of(evaluation));
+    results["warnings"] = json_of(stack.warnings);
     folder.write(results_name, results.dump(2) + "\n");
     page.results = std::move(results);
     folder.write("report.html", stack_page(page));

@@ -3,6 +3,7 @@
 
 #include "configuration/configuration.hpp"
 #include "core/files/result_folder.hpp"
+#include "core/messages/warning.hpp"
 #include "measurement/evaluation/evaluation_maps.hpp"
 #include "measurement/evaluation/results_document.hpp"
 #include "optics/instrument/instrument.hpp"
@@ -11,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <vector>
 
 namespace vkfv::measurement {
 
@@ -27,6 +29,7 @@ StackSource stack_source(const Configuration& configuration, const optics::Instr
 // An evaluated stack with what its results say beside the evaluation.
 struct EvaluatedStack {
     Evaluation evaluation;
+    std::vector<Warning> warnings{};                                  // that the log has too
     nlohmann::ordered_json origin = nlohmann::ordered_json::object(); // of the images, for results.json
     StackSource source;
     TopographyFiles files;

@@ -1,5 +1,6 @@
 #include "measurement/evaluation/existing_stack.hpp"
 
+#include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/known_truth.hpp"
 #include "measurement/scene/phase_limits.hpp"
@@ -215,15 +216,17 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const auto specimen = make_specimen(configuration);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const ImageSize pixels = configuration.instrument.detector_pixels;
+    std::vector<Warning> warnings =
+        plan_warnings(configuration, instrument, relief_of(specimen, pixels, instrument.first_order.pixel_pitch));
     KnownErrors errors{.flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch),
                        .design = optics::field_curvature(instrument.first_order)};
     if (configuration.trace.waves) {
         const PhaseLimits limits = phase_limits(configuration.instrument, instrument, specimen);
         errors.hidden_uncertainty = limits.height_uncertainty();
-        for (const auto& warning : warnings_of(limits)) {
-            spdlog::warn(warning);
-        }
+        append(warnings, warnings_of(limits));
     }
+    log_warnings(warnings);
+    append(warnings, instrument.warnings); // which the log has already
     const auto order = order_of_images(positions.size(), stack.shuffle);
     StackEvaluation evaluation(
         evaluation_options(configuration, instrument),
@@ -237,6 +240,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     auto source = stack_source(configuration, instrument);
     source.ledger = scan::mean_ledger(stack.folder);
     auto origin = run_of(stack.folder);
+    append(warnings, warnings_of_run(stack.folder));
     std::error_code none; // a folder to be made is another
     if (!std::filesystem::equivalent(stack.destination, stack.folder, none)) {
         origin = {{"stack", stack.folder.string()},
@@ -249,6 +253,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     }
     return {.evaluation = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,
                                             errors, specimen::feature_of(configuration.specimen->shape)),
+            .warnings = std::move(warnings),
             .origin = std::move(origin),
             .source = std::move(source),
             .files = topography_files(configuration)};
@@ -281,18 +286,24 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
         negative = negative || any_negative(channels);
         evaluation.add(std::move(channels), stack.z_start + image * stack.z_step);
     }
+    std::vector<Warning> warnings;
+    const auto warn = [&](const char* code, const std::string& sentence) {
+        warnings.push_back({.code = code, .key = {}, .value = {}, .works = {}, .sentence = sentence});
+    };
     if (negative && !stack.corrections.dark) { // noise reaches below what was taken off
-        spdlog::warn(
-            "{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
-            "any background subtracted.",
-            stack.images.string());
+        warn("negative-light",
+             fmt::format(
+                 "{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
+                 "any background subtracted.",
+                 stack.images.string()));
     }
     const topography::StackFaults faults = finder.finish();
     if (!stack.shuffle) { // images in random order have other faults
         for (const auto& sentence : sentences_of(faults, configuration.registration)) {
-            spdlog::warn("{}: {}.", stack.images.string(), sentence);
+            warn("image-fault", fmt::format("{}: {}.", stack.images.string(), sentence));
         }
     }
+    log_warnings(warnings);
     auto origin = report::as_declared("results", {{"stack", stack.images.string()},
                                                   {"images", series.size()},
                                                   {"first_image", series.name(0)},
@@ -320,6 +331,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
         origin["registration"] = images.json();
     }
     return {.evaluation = evaluation.finish(stack.pitch, configuration.band.form, errors),
+            .warnings = std::move(warnings),
             .origin = std::move(origin),
             .source = {},
             .files = {.date_of_images = series.stated().date}};

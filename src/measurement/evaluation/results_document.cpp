@@ -2,11 +2,13 @@
 
 #include "core/files/file.hpp"
 #include "core/parsing/json_depth.hpp"
+#include "measurement/scene/warning_json.hpp"
 #include "report/declared_figures.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <string>
 
@@ -130,9 +132,35 @@ nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
     for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image", "waves", "stage", "camera"}) {
         if (results.is_object() && results.contains(key)) {
             run[key] = results.at(key);
+            if (run[key].is_object()) {
+                run[key].erase("warnings"); // of results that an earlier version wrote
+            }
         }
     }
     return run;
+}
+
+std::vector<Warning> warnings_of_run(const std::filesystem::path& folder) {
+    // What only whoever had the light could tell; all others are told again.
+    constexpr std::array of_images = {"ray-noise-above-camera", "saturated",    "grey-values-end",
+                                      "dark-cut-off",           "coarse-waves", "folded-waves"};
+    std::error_code none;
+    if (!std::filesystem::exists(folder / results_name, none)) {
+        return {};
+    }
+    const auto results = nlohmann::ordered_json::parse(read_file(folder / results_name), nullptr, false);
+    std::vector<Warning> warnings;
+    try {
+        if (results.is_object() && results.contains("warnings")) {
+            warnings = warnings_of_json(results.at("warnings"));
+        }
+    } catch (const nlohmann::json::exception&) { // changed by another program
+        return {};
+    }
+    std::erase_if(warnings, [&](const Warning& warning) {
+        return std::ranges::none_of(of_images, [&](const char* code) { return warning.code == code; });
+    });
+    return warnings;
 }
 
 } // namespace vkfv::measurement

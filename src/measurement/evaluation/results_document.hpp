@@ -1,6 +1,7 @@
 // results.json: the figures of an evaluated stack, and what earlier results say of the trace.
 #pragma once
 
+#include "core/messages/warning.hpp"
 #include "measurement/evaluation/evaluation_figures.hpp"
 
 #include <nlohmann/json.hpp>
@@ -22,5 +23,7 @@ nlohmann::ordered_json results_of(const Evaluation& evaluation, const std::vecto
 // The figures of the trace (device, digest, seed and counts) that an earlier results.json of the folder holds; an empty
 // object if there is no such file.
 nlohmann::ordered_json run_of(const std::filesystem::path& folder);
+// Its warnings of the images' light and of their camera, which nobody can tell again without tracing.
+std::vector<Warning> warnings_of_run(const std::filesystem::path& folder);
 
 } // namespace vkfv::measurement

@@ -1,5 +1,7 @@
 #include "measurement/evaluation/stack_page.hpp"
 
+#include "measurement/scene/verdict.hpp"
+#include "measurement/scene/warning_json.hpp"
 #include "report/declared_figures.hpp"
 #include "report/page.hpp"
 #include "report/reader_text.hpp"
@@ -182,16 +184,17 @@ void add_light(report::Page& page, const scan::MeanLedger& ledger) {
     page.table("Mean of all images; what is not listed took none", rows);
 }
 
-// A reader of the report alone has not seen the log, so the warnings of waves and camera stand here too.
-void add_warnings(report::Page& page, const nlohmann::ordered_json& results) {
-    for (const char* part : {"waves", "camera"}) {
-        const auto found = results.find(part);
-        if (found == results.end() || !found->contains("warnings")) {
-            continue;
-        }
-        for (const std::string warning : found->at("warnings")) {
-            page.paragraph("Warning: " + warning);
-        }
+// A reader of the report alone has not seen the terminal: what it said in judgement and of warnings stands here too.
+void add_verdict(report::Page& page, const nlohmann::ordered_json& results) {
+    const Verdict verdict = verdict_of_json(results.at("verdict"));
+    std::string text;
+    for (const std::string& sentence : verdict.sentences) {
+        text += (text.empty() ? "" : "; ") + sentence;
+    }
+    page.paragraph("Verdict: " + text + ".");
+    for (const Warning& warning : warnings_of_json(results.at("warnings"))) {
+        const std::string remedy = remedy_text(warning);
+        page.paragraph("Warning: " + warning.sentence + (remedy.empty() ? "" : " " + remedy));
     }
 }
 
@@ -227,7 +230,7 @@ std::string stack_page(const StackPage& content) {
     report::Page page;
     const auto& plain = content.plain;
     page.section("results", "Results");
-    add_warnings(page, content.results);
+    add_verdict(page, content.results);
     if (plain.figures.front().deviation) {
         add_deviations(page, content);
     } else {

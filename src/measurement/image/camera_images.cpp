@@ -220,28 +220,38 @@ nlohmann::ordered_json camera_json(const camera::CameraOptions& options, const C
             {"seed", options.seed}};
 }
 
-std::vector<std::string> warnings_of_images(const Configuration& configuration, const CameraFigures& figures) {
+std::vector<Warning> warnings_of_images(const Configuration& configuration, const CameraFigures& figures) {
     auto warnings = warnings_of(camera::Camera(configuration.camera.value(), configuration.instrument.spectrum));
     std::ranges::copy(camera_warnings(configuration, figures), std::back_inserter(warnings));
     return warnings;
 }
 
-std::vector<std::string> camera_warnings(const Configuration& configuration, const CameraFigures& figures) {
-    std::vector<std::string> warnings;
+std::vector<Warning> camera_warnings(const Configuration& configuration, const CameraFigures& figures) {
+    std::vector<Warning> warnings;
     const double ratio = figures.ray_over_camera();
     if (ratio > most_ray_noise) {
-        warnings.push_back(fmt::format("The rays' noise, {:.3g} e-, is {:.2g} of the camera's, {:.3g} e-: above a "
-                                       "third the images are noisier than "
-                                       "the camera's. {}",
-                                       figures.light.ray_noise, ratio, figures.light.camera_noise,
-                                       remedy_of_noise(configuration, ratio, most_ray_noise)));
+        warnings.push_back(
+            {.code = "ray-noise-above-camera",
+             .key = "trace.rays",
+             .value = std::to_string(configuration.trace.rays),
+             .works = rays_for_noise(configuration, ratio, most_ray_noise),
+             .sentence = fmt::format("The rays' noise, {:.3g} e-, is {:.2g} of the camera's, {:.3g} e-: above a "
+                                     "third the images are noisier than "
+                                     "the camera's. {}",
+                                     figures.light.ray_noise, ratio, figures.light.camera_noise,
+                                     remedy_of_noise(configuration, ratio, most_ray_noise))});
     }
     if (figures.largest_saturated_share > most_saturated) {
-        warnings.push_back(fmt::format("Up to {:.3g} % of an image's pixels are saturated. {}",
-                                       100 * figures.largest_saturated_share,
-                                       configuration.camera->control == camera::ExposureControl::time
-                                           ? "Take a shorter camera.exposure_ms or less source.flux_W"
-                                           : "Take a smaller camera.saturation"));
+        const bool by_time = configuration.camera->control == camera::ExposureControl::time;
+        warnings.push_back({.code = "saturated",
+                            .key = by_time ? "camera.exposure_ms" : "camera.saturation",
+                            .value = by_time ? number_text(1e3 * configuration.camera->exposure_time)
+                                             : number_text(configuration.camera->saturation),
+                            .works = by_time ? "a shorter one" : "a smaller one",
+                            .sentence = fmt::format("Up to {:.3g} % of an image's pixels are saturated. {}",
+                                                    100 * figures.largest_saturated_share,
+                                                    by_time ? "Take a shorter camera.exposure_ms or less source.flux_W"
+                                                            : "Take a smaller camera.saturation")});
     }
     return warnings;
 }

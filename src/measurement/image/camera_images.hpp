@@ -3,6 +3,7 @@
 
 #include "camera/camera.hpp"
 #include "configuration/configuration.hpp"
+#include "core/messages/warning.hpp"
 #include "measurement/scene/working_devices.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "optics/waves/diffraction.hpp"
@@ -81,8 +82,8 @@ std::optional<CameraFigures> camera_figures(const scan::ImageStore& store);
 // For results.json.
 nlohmann::ordered_json camera_json(const camera::CameraOptions& options, const CameraFigures& figures);
 // Sentences on noise of rays that the camera's does not hide, and on light that saturates.
-std::vector<std::string> camera_warnings(const Configuration& configuration, const CameraFigures& figures);
+std::vector<Warning> camera_warnings(const Configuration& configuration, const CameraFigures& figures);
 // The same after those on the camera itself.
-std::vector<std::string> warnings_of_images(const Configuration& configuration, const CameraFigures& figures);
+std::vector<Warning> warnings_of_images(const Configuration& configuration, const CameraFigures& figures);
 
 } // namespace vkfv::measurement

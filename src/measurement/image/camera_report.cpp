@@ -1,5 +1,7 @@
 #include "measurement/image/camera_report.hpp"
 
+#include "measurement/scene/warning_json.hpp"
+
 #include "report/chart.hpp"
 
 #include <fmt/format.h>
@@ -115,37 +117,52 @@ nlohmann::ordered_json camera_json(const CameraMeasurement& measurement) {
     auto warnings = warnings_of(measurement.camera);
     const auto further = warnings_of(measurement);
     warnings.insert(warnings.end(), further.begin(), further.end());
-    json["warnings"] = warnings;
+    json["warnings"] = json_of(warnings);
     return json;
 }
 
-std::vector<std::string> warnings_of(const CameraMeasurement& measurement) {
-    std::vector<std::string> warnings;
+std::vector<Warning> warnings_of(const CameraMeasurement& measurement) {
+    std::vector<Warning> warnings;
     if (const auto& noise = measurement.figures.read_noise; noise.bounded) {
         warnings.push_back(
-            fmt::format("Quantisation dominates the noise in the dark, whose variance is below 0.24 DN^2: the temporal "
-                        "dark noise is not measured, but below {:.3g} e- (EMVA 1288), and DSNU is that of rounded "
-                        "values, which may be far from the pixels'. A larger camera.gain_dn_per_e would show both",
-                        noise.value));
+            {.code = "quantisation",
+             .key = "camera.gain_dn_per_e",
+             .value = number_text(measurement.camera.options().gain),
+             .works = "a larger one",
+             .sentence = fmt::format(
+                 "Quantisation dominates the noise in the dark, whose variance is below 0.24 DN^2: the temporal "
+                 "dark noise is not measured, but below {:.3g} e- (EMVA 1288), and DSNU is that of rounded "
+                 "values, which may be far from the pixels'. A larger camera.gain_dn_per_e would show both",
+                 noise.value)});
     }
     return warnings;
 }
 
-std::vector<std::string> warnings_of(const camera::Camera& camera) {
-    std::vector<std::string> warnings;
+std::vector<Warning> warnings_of(const camera::Camera& camera) {
+    std::vector<Warning> warnings;
     const auto& options = camera.options();
     if (camera.converter_end() < camera.clip()) {
-        warnings.push_back(fmt::format(
-            "Grey values end at {:.0f} e-, before a pixel's charge does, at {:.0f} e-: the camera saturates below its "
-            "full_well_e. Take a smaller camera.gain_dn_per_e or offset_dn, or more bits.",
-            camera.converter_end(), camera.clip()));
+        warnings.push_back(
+            {.code = "grey-values-end",
+             .key = "camera.gain_dn_per_e",
+             .value = number_text(options.gain),
+             .works = number_text(options.gain * camera.converter_end() / camera.clip(), Rounding::down),
+             .sentence = fmt::format("Grey values end at {:.0f} e-, before a pixel's charge does, at {:.0f} e-: the "
+                                     "camera saturates below its "
+                                     "full_well_e. Take a smaller camera.gain_dn_per_e or offset_dn, or more bits.",
+                                     camera.converter_end(), camera.clip())});
     }
     constexpr double deviations = 4;
     const double spread = options.gain * std::hypot(camera.temporal_noise(0), options.dark_signal);
     if (options.offset < deviations * spread) {
-        warnings.push_back(fmt::format("Grey values of the dark spread by {:.2g} DN, and camera.offset_dn = {:g} cuts "
-                                       "some of them off at 0. Take at least {:.2g}.",
-                                       spread, options.offset, deviations * spread));
+        warnings.push_back(
+            {.code = "dark-cut-off",
+             .key = "camera.offset_dn",
+             .value = number_text(options.offset),
+             .works = number_text(deviations * spread, Rounding::up),
+             .sentence = fmt::format("Grey values of the dark spread by {:.2g} DN, and camera.offset_dn = {:g} cuts "
+                                     "some of them off at 0. Take at least {:.2g}.",
+                                     spread, options.offset, deviations * spread)});
     }
     return warnings;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "camera/photon_transfer.hpp"
+#include "core/messages/warning.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -24,9 +25,9 @@ CameraMeasurement measure_camera(const camera::Camera& camera, const camera::Pho
 std::string summary(const CameraMeasurement& measurement);
 nlohmann::ordered_json camera_json(const CameraMeasurement& measurement);
 // Sentences on what the camera's values do to its figures.
-std::vector<std::string> warnings_of(const camera::Camera& camera);
+std::vector<Warning> warnings_of(const camera::Camera& camera);
 // Sentences on figures that the measurement could only bound.
-std::vector<std::string> warnings_of(const CameraMeasurement& measurement);
+std::vector<Warning> warnings_of(const CameraMeasurement& measurement);
 
 // SVG: variance over mean; signal to noise ratio over photons, with the model's; grey value over photons, and its
 // deviation from a line.

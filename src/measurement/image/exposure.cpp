@@ -14,7 +14,6 @@
 #include "specimen/geometry_digest.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -62,12 +61,9 @@ Exposure expose(const Configuration& configuration, WorkingDevices& devices, con
                 ImagingCamera(configuration, instrument, seconds).develop(static_cast<int>(image), exposure.image);
         }
         if (const auto filters = tracer->pupil_filters(); !filters.empty()) {
-            for (const auto& warning : warnings_of(worst_of(limits_of_lights(filters, instrument)))) {
-                spdlog::warn(warning);
-            }
-            for (const auto& warning : warnings_of(phase_limits(configuration.instrument, instrument, specimen))) {
-                spdlog::warn(warning);
-            }
+            append(exposure.warnings, warnings_of(worst_of(limits_of_lights(filters, instrument))));
+            append(exposure.warnings, warnings_of(phase_limits(configuration.instrument, instrument, specimen)));
+            log_warnings(exposure.warnings);
         }
     });
     if (const auto diffraction = diffraction_of_evaluation(configuration, instrument)) {
@@ -106,8 +102,21 @@ double signal_to_noise(const trace::Image& image) {
     return flux / std::sqrt(variance * static_cast<double>(image.flux.values.size()));
 }
 
+namespace {
+
+// How many times as many rays; noise falls with the root of their number.
+double times_as_many_rays(double share, double wanted) {
+    return std::ceil(share * share / (wanted * wanted));
+}
+
+} // namespace
+
+std::string rays_for_noise(const Configuration& configuration, double share, double wanted) {
+    return number_text(times_as_many_rays(share, wanted) * static_cast<double>(configuration.trace.rays), Rounding::up);
+}
+
 std::string remedy_of_noise(const Configuration& configuration, double share, double wanted) {
-    const double times = std::ceil(share * share / (wanted * wanted));
+    const double times = times_as_many_rays(share, wanted);
     std::string text = fmt::format("Launch {:.3g} times as many rays (--rays {:.2g})", times,
                                    times * static_cast<double>(configuration.trace.rays));
     if (configuration.trace.estimator == trace::Estimator::forward) {

@@ -28,6 +28,7 @@ struct Exposure {
     std::optional<Grid<float>> diffracted; // its light after diffraction, if the configuration has one and no camera
     std::optional<scan::Frame> taken;      // by the camera, if there is one: grey values of light after diffraction
     scan::PixelType type = scan::PixelType::float32; // of the files
+    std::vector<Warning> warnings;                   // of its waves
 };
 Exposure expose(const Configuration& configuration, WorkingDevices& devices, const optics::Instrument& instrument,
                 const specimen::Specimen& specimen, double focal_height, const std::filesystem::path& checkpoint = {});
@@ -37,6 +38,8 @@ double signal_to_noise(const trace::Image& image);
 // What helps where noise is this share of a pixel's mean light and should be `wanted`, with the configuration's source
 // and estimator; a sentence.
 std::string remedy_of_noise(const Configuration& configuration, double share, double wanted);
+// trace.rays for that, as its value.
+std::string rays_for_noise(const Configuration& configuration, double share, double wanted);
 // The files of an exposure by their names, beside each other: NAME, float32 W per pixel or a camera's grey values, and
 // without a camera the diffracted image as NAME_diffracted.
 std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,

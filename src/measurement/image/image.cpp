@@ -7,6 +7,7 @@
 #include "measurement/image/camera_images.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/specimen_view.hpp"
+#include "measurement/scene/warning_json.hpp"
 #include "report/declared_figures.hpp"
 #include "report/topography_picture.hpp"
 
@@ -107,17 +108,22 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     std::error_code none;
     std::filesystem::remove(checkpoint, none);
     enter_stage("end");
-    result.warnings = warning_of_lost_light(exposure.image);
+    result.warnings = warning_of_lost_light(configuration, instrument, exposure.image);
     if (exposure.taken) {
         const auto figures = camera_figures(std::array{note_of(exposure).value()});
-        std::ranges::copy(warnings_of_images(configuration, figures), std::back_inserter(result.warnings));
+        append(result.warnings, warnings_of_images(configuration, figures));
     } else if (const double ratio = signal_to_noise(exposure.image); ratio < least_signal_to_noise) {
-        result.warnings.push_back(fmt::format("noise is {:.0f} % of a pixel's mean light. {}", 100 / ratio,
-                                              remedy_of_noise(configuration, 1 / ratio, 1 / least_signal_to_noise)));
+        result.warnings.push_back(
+            {.code = "few-rays",
+             .key = "trace.rays",
+             .value = std::to_string(configuration.trace.rays),
+             .works = rays_for_noise(configuration, 1 / ratio, 1 / least_signal_to_noise),
+             .sentence = fmt::format("noise is {:.0f} % of a pixel's mean light. {}", 100 / ratio,
+                                     remedy_of_noise(configuration, 1 / ratio, 1 / least_signal_to_noise))});
     }
-    for (const auto& warning : result.warnings) {
-        spdlog::warn(warning);
-    }
+    log_warnings(result.warnings);
+    append(result.warnings, exposure.warnings); // which the log has already
+    append(result.warnings, instrument.warnings);
     return result;
 }
 
@@ -131,7 +137,7 @@ std::string summary(const ImageResult& result) {
 }
 
 Json image_json(const ImageResult& result) {
-    const auto& [image, grid, tracer, diffracted, taken, type] = result.exposure;
+    const auto& [image, grid, tracer, diffracted, taken, type, of_waves] = result.exposure;
     double power = 0;
     for (const double flux : image.flux.values) {
         power += flux;
@@ -149,7 +155,7 @@ Json image_json(const ImageResult& result) {
                  {"mean_pixel_W", power / static_cast<double>(image.flux.values.size())},
                  {"signal_to_noise", signal_to_noise(image)},
                  {"ledger", json_of(image.ledger)},
-                 {"warnings", result.warnings}};
+                 {"warnings", json_of(result.warnings)}};
     if (const auto note = note_of(result.exposure)) {
         json["camera"] = note->json();
     }

@@ -15,8 +15,8 @@ struct ImageResult {
     Exposure exposure;
     double focal_height = 0; // mm
     std::filesystem::path file;
-    std::filesystem::path picture;     // beside it, an SVG
-    std::vector<std::string> warnings; // what is wrong with its light
+    std::filesystem::path picture; // beside it, an SVG
+    std::vector<Warning> warnings; // what is wrong with its light
 };
 
 // Takes the image at a height of the focal plane (mm) and writes it as `file`, a TIFF, with its picture; warnings are

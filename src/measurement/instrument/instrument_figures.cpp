@@ -3,9 +3,13 @@
 #include "core/mathematics/units.hpp"
 #include "core/threads/threads.hpp"
 #include "measurement/image/camera_report.hpp"
+#include "measurement/judgement/expectation.hpp"
+#include "measurement/judgement/plan_warnings.hpp"
+#include "measurement/judgement/verdict.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/phase_limits.hpp"
 #include "measurement/scene/stage_figures.hpp"
+#include "measurement/scene/warning_json.hpp"
 #include "measurement/scene/wave_limits.hpp"
 #include "optics/instrument/image_quality.hpp"
 #include "optics/prescriptions/reversal.hpp"
@@ -15,11 +19,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <future>
-#include <iterator>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace vkfv::measurement {
@@ -133,12 +138,11 @@ FigureGroup aberrations(const optics::FirstOrder& first_order, const optics::Ima
 }
 
 FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::Instrument& instrument,
-                             std::vector<std::string>& warnings) {
+                             std::vector<Warning>& warnings) {
     constexpr double bytes_per_gib = 1 << 30;
     const auto of_lights = limits_of_lights(options, instrument);
     const WaveLimits limits = worst_of(of_lights);
-    const auto further = warnings_of(limits);
-    warnings.insert(warnings.end(), further.begin(), further.end());
+    append(warnings, warnings_of(limits));
     std::uint64_t memory = 0, memory_of_host = 0; // each source's light is sorted by itself
     for (const WaveLimits& light : of_lights) {
         const trace::WaveSizes sizes{
@@ -160,8 +164,8 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
              {"wave_contrast_error_corner", error_of(2), "the same in the corner"}}};
 }
 
-FigureGroup figures_of_phase(const PhaseLimits& limits, std::vector<std::string>& warnings) {
-    std::ranges::move(warnings_of(limits), std::back_inserter(warnings));
+FigureGroup figures_of_phase(const PhaseLimits& limits, std::vector<Warning>& warnings) {
+    append(warnings, warnings_of(limits));
     return {"Whether images of waves hold: a filled pupil, or relief above lambda / (4 pi)",
             {{"wave_contrast_error_fill", limits.contrast_error, "at most, since light does not fill the pupil evenly"},
              {"wave_source_fill", limits.source_fill, "of the objective's aperture, by the source; 0: a ring"},
@@ -170,14 +174,18 @@ FigureGroup figures_of_phase(const PhaseLimits& limits, std::vector<std::string>
              {"wave_phase_height_um", limits.phase_height * um_per_mm, "lambda / (4 pi)"}}};
 }
 
-FigureGroup figures_of_stage(const Configuration& configuration, std::vector<std::string>& warnings) {
+FigureGroup figures_of_stage(const Configuration& configuration, std::vector<Warning>& warnings) {
     const auto errors = stage_errors(configuration);
     const auto& stage = *configuration.stage;
     if (stage.exposure_time > stage.interval) {
         warnings.push_back(
-            fmt::format("An exposure of {:.4g} s takes longer than the {:.4g} s from image to image. Take "
-                        "a longer stage.interval_s.",
-                        stage.exposure_time, stage.interval));
+            {.code = "exposure-above-interval",
+             .key = "stage.interval_s",
+             .value = number_text(stage.interval),
+             .works = number_text(stage.exposure_time, Rounding::up),
+             .sentence = fmt::format("An exposure of {:.4g} s takes longer than the {:.4g} s from image to image. Take "
+                                     "a longer stage.interval_s.",
+                                     stage.exposure_time, stage.interval)});
     }
     return {"Stage, over the images of the scan",
             {{"stage_position_error_rms_um", errors.rms * um_per_mm, "of the focal plane from its nominal height"},
@@ -220,75 +228,38 @@ ScanFigures figures_of_scan(const Configuration& configuration) {
 }
 
 SpecimenFigures figures_of_specimen(const Configuration& configuration, const optics::Instrument& instrument,
-                                    const specimen::Specimen& specimen, std::vector<std::string>& warnings) {
+                                    const specimen::Specimen& specimen, std::vector<Warning>& warnings) {
     const auto relief =
         relief_of(specimen, configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
-    const auto sparse = warning_of_sparse_field(specimen, relief);
-    warnings.insert(warnings.end(), sparse.begin(), sparse.end());
+    append(warnings, warning_of_sparse_field(specimen, relief));
     const auto [x_min, y_min, x_max, y_max] = specimen::footprint(specimen);
     return {.sides = {x_max - x_min, y_max - y_min}, .relief = relief};
 }
 
-void warn_of_smoothing(const Configuration& configuration, const optics::Instrument& instrument,
-                       std::vector<std::string>& warnings) {
-    if (!configuration.topography.smoothing_steps &&
-        evaluation_options(configuration, instrument).smoothing_steps == topography::most_smoothing_steps) {
-        warnings.push_back(
-            fmt::format("The scan's steps are so fine that the average along z, topography.smoothing_steps, "
-                        "ends at its largest, {:g} steps, below what suits the focus curves: noise is "
-                        "averaged less. Take coarser steps.",
-                        topography::most_smoothing_steps));
-    }
-}
-
-void warn_of_step(const Configuration& configuration, const ScanFigures& scan, const optics::FirstOrder& first_order,
-                  std::vector<std::string>& warnings) {
-    const double coarsest = 0.5 * first_order.depth_of_field;
-    // Its own rounding does not count.
-    if (scan.images > 1 && configuration.scan->z_step > coarsest * (1 + 1e-9)) {
-        warnings.push_back(fmt::format("The scan's step, {:.4g} um, is coarser than half the depth of field, {:.4g} "
-                                       "um: peaks of focus fall between images.",
-                                       configuration.scan->z_step * um_per_mm, coarsest * um_per_mm));
-    }
-}
-
 void warn_of_size(const SpecimenFigures& specimen, const optics::FirstOrder& first_order,
-                  const optics::ImageQuality& quality, std::vector<std::string>& warnings) {
+                  const optics::ImageQuality& quality, std::vector<Warning>& warnings) {
     // A rim around the field belongs to a good model: light that is scattered there comes into the field too.
     constexpr double most = 2.5;
     for (const int axis : {0, 1}) {
         if (specimen.sides[axis] > most * quality.field[axis] + first_order.pixel_pitch) {
             warnings.push_back(
-                fmt::format("The specimen, {:.4g} um across, is {:.2g} times as large as the field of view, {:.4g} "
-                            "um: what lies outside is made and not measured.",
-                            specimen.sides[axis] * um_per_mm, specimen.sides[axis] / quality.field[axis],
-                            quality.field[axis] * um_per_mm));
+                {.code = "large-specimen",
+                 .key = "specimen.size_mm",
+                 .value = number_text(specimen.sides[axis]),
+                 .works = number_text(most * quality.field[axis], Rounding::down),
+                 .sentence = fmt::format(
+                     "The specimen, {:.4g} um across, is {:.2g} times as large as the field of view, {:.4g} "
+                     "um: what lies outside is made and not measured.",
+                     specimen.sides[axis] * um_per_mm, specimen.sides[axis] / quality.field[axis],
+                     quality.field[axis] * um_per_mm)});
             break;
         }
     }
 }
 
-void warn_of_range(const Relief& relief, const ScanFigures& scan, const optics::FirstOrder& first_order,
-                   std::vector<std::string>& warnings) {
-    const auto beyond_scan = [&](double lowest, double highest) {
-        return relief.seen_share > 0 && (lowest < scan.first || highest > scan.last);
-    };
-    const auto [lower, higher] = std::minmax({0.0, -first_order.field_curvature, -first_order.field_curvature_corner});
-    if (beyond_scan(relief.lowest, relief.highest)) {
-        warnings.push_back(fmt::format("the specimen reaches from {:.3g} to {:.3g} um, beyond the scan: what lies "
-                                       "outside will not be measured",
-                                       relief.lowest * um_per_mm, relief.highest * um_per_mm));
-    } else if (beyond_scan(relief.lowest + lower, relief.highest + higher)) {
-        warnings.push_back(
-            fmt::format("The field is curved: the specimen comes into focus between {:.3g} and {:.3g} um "
-                        "there, beyond the scan.",
-                        (relief.lowest + lower) * um_per_mm, (relief.highest + higher) * um_per_mm));
-    }
-}
-
 // A prescription that is written from infinity towards its focus, as most designs are, makes a valid microscope that
 // forms no image. It is recognised by what the objective does when it is turned round. listed: waves RMS on the axis.
-void warn_of_direction(const Configuration& configuration, double listed, std::vector<std::string>& warnings) {
+void warn_of_direction(const Configuration& configuration, double listed, std::vector<Warning>& warnings) {
     constexpr double suspicious = 0.25; // waves RMS: a Strehl ratio below 0.1
     constexpr double far_better = 0.25; // of the wavefront
     if (!(listed > suspicious)) {
@@ -303,13 +274,78 @@ void warn_of_direction(const Configuration& configuration, double listed, std::v
         return;
     }
     if (turned < far_better * listed) {
-        warnings.push_back(fmt::format(
-            "The objective {} seems to be written from infinity towards its focus: its wavefront on the axis is off by "
-            "{:.3g} waves RMS, and by {:.3g} when it is turned round. An objective's prescription begins at the "
-            "specimen "
-            "(vkfv import --reverse)",
-            configuration.instrument.objective.name, listed, turned));
+        warnings.push_back(
+            {.code = "objective-turned-round",
+             .key = "objective.prescription",
+             .value = configuration.instrument.objective.name,
+             .works = "the same turned round, by vkfv import --reverse",
+             .sentence = fmt::format(
+                 "The objective {} seems to be written from infinity towards its focus: its wavefront on the axis is "
+                 "off by "
+                 "{:.3g} waves RMS, and by {:.3g} when it is turned round. An objective's prescription begins at the "
+                 "specimen "
+                 "(vkfv import --reverse)",
+                 configuration.instrument.objective.name, listed, turned)});
     }
+}
+
+FigureGroup figures_of_expectation(const Configuration& configuration, const Expectation& expected) {
+    constexpr double percent = 100;
+    FigureGroup group = {
+        "Expected of the stack, by a sample of its light",
+        {{"expected_height_noise_um", expected.height_noise * um_per_mm, "of a height, by the images' noise"},
+         {"expected_height_uncertainty_um", expected.height_uncertainty * um_per_mm,
+          "standard uncertainty of a height"},
+         {"expected_lateral_resolution_um", expected.lateral_resolution * um_per_mm,
+          "period of waves that keep half of their height"},
+         {"expected_image_noise_percent", percent * expected.image_noise(), "of a pixel's brightness"},
+         {"expected_ray_noise_percent", percent * expected.ray_noise, "of it the rays'"},
+         {"expected_texture_percent", percent * expected.texture, "of the brightness, as white texture"},
+         {"expected_texture_over_noise", expected.texture_over_noise, "of the focus curves' maxima"},
+         {"expected_rays_per_pixel", expected.detected_rays,
+          configuration.trace.estimator == trace::Estimator::backward ? "launched, of an image"
+                                                                      : "detected, of an image"},
+         {"expected_light_per_pixel_W", expected.light_per_pixel, "in focus"},
+         {"focus_curve_deviation_um", expected.curve_deviation * um_per_mm, "standard deviation, over the height"},
+         {"steepest_slope_deg", expected.steepest / radians_per_degree, "whose light comes back"},
+         {"measurable_share_percent", percent * expected.measurable_share, "of the field"},
+         {"slopes_to_15_deg_percent", percent * expected.slope_shares[0], "of the points"},
+         {"slopes_to_30_deg_percent", percent * expected.slope_shares[1], "from 15 deg on"},
+         {"slopes_to_45_deg_percent", percent * expected.slope_shares[2], "from 30 deg on"},
+         {"slopes_to_60_deg_percent", percent * expected.slope_shares[3], "from 45 deg on"},
+         {"slopes_to_90_deg_percent", percent * expected.slope_shares[4], "from 60 deg on"}}};
+    if (configuration.camera) {
+        group.figures.push_back(
+            {"expected_camera_noise_percent", percent * expected.camera_noise, "of the image's noise the camera's"});
+        group.figures.push_back({"expected_light_e", expected.light_electrons, "of a pixel in focus"});
+    }
+    return group;
+}
+
+// What a first look at an instrument asks for; the rest is for --all.
+bool matters(const Figure& figure) {
+    constexpr std::array names = {"working_distance_mm",
+                                  "numerical_aperture",
+                                  "magnification",
+                                  "field_of_view_um",
+                                  "pixel_pitch_um",
+                                  "airy_radius_um",
+                                  "pixels_per_airy_radius",
+                                  "depth_of_field_um",
+                                  "strehl_axis",
+                                  "strehl_corner",
+                                  "field_curvature_corner_um",
+                                  "wave_memory_gib",
+                                  "wave_contrast_error_fill",
+                                  "camera_full_well_e",
+                                  "camera_read_noise_e",
+                                  "expected_height_noise_um",
+                                  "expected_height_uncertainty_um",
+                                  "expected_lateral_resolution_um",
+                                  "expected_image_noise_percent",
+                                  "expected_texture_percent",
+                                  "expected_rays_per_pixel"};
+    return std::ranges::any_of(names, [&](const char* name) { return std::string_view(name) == figure.name; });
 }
 
 // Aligned, at most 110 columns wide.
@@ -334,7 +370,7 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
     const auto& first_order = instrument.first_order;
     auto measured =
         std::async(std::launch::async, [&] { return optics::image_quality(configuration.instrument, instrument); });
-    std::vector<std::string> warnings_of_waves;
+    std::vector<Warning> warnings_of_waves;
     std::optional<FigureGroup> waves;
     if (configuration.trace.waves) {
         waves = figures_of_waves(*configuration.trace.waves, instrument, warnings_of_waves);
@@ -343,42 +379,49 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
     InstrumentFigures figures{.groups = groups_of(configuration, instrument, quality),
                               .scan = {},
                               .specimen = {},
+                              .verdict = {},
                               .warnings = instrument.warnings};
     const WavefrontQualities wavefront = wavefronts_at(instrument, quality);
     figures.groups.push_back(aberrations(first_order, quality, wavefront));
     auto& warnings = figures.warnings;
-    warnings.insert(warnings.end(), quality.warnings.begin(), quality.warnings.end());
+    append(warnings, quality.warnings);
     warn_of_direction(configuration, wavefront.axis.rms, warnings);
     if (waves) {
         figures.groups.push_back(*std::move(waves));
-        warnings.insert(warnings.end(), warnings_of_waves.begin(), warnings_of_waves.end());
+        append(warnings, warnings_of_waves);
     }
     if (configuration.camera) {
         const camera::Camera camera(*configuration.camera, configuration.instrument.spectrum);
         figures.groups.push_back(figures_of_camera(camera));
-        const auto further = warnings_of(camera);
-        warnings.insert(warnings.end(), further.begin(), further.end());
+        append(warnings, warnings_of(camera));
     }
     if (configuration.stage && configuration.scan) {
         figures.groups.push_back(figures_of_stage(configuration, warnings));
     }
     if (configuration.scan) {
         figures.scan = figures_of_scan(configuration);
-        warn_of_step(configuration, *figures.scan, first_order, warnings);
-        warn_of_smoothing(configuration, instrument, warnings);
     }
+    std::optional<Expectation> expected;
     if (configuration.specimen) {
         const specimen::Specimen made = specimen.get();
         figures.specimen = figures_of_specimen(configuration, instrument, made, warnings);
+        double hidden_uncertainty = 0;
         if (configuration.trace.waves) {
-            figures.groups.push_back(
-                figures_of_phase(phase_limits(configuration.instrument, instrument, made), warnings));
+            const PhaseLimits limits = phase_limits(configuration.instrument, instrument, made);
+            hidden_uncertainty = limits.height_uncertainty();
+            figures.groups.push_back(figures_of_phase(limits, warnings));
         }
         warn_of_size(*figures.specimen, first_order, quality, warnings);
-        if (figures.scan) {
-            warn_of_range(figures.specimen->relief, *figures.scan, first_order, warnings);
+        append(warnings, plan_warnings(configuration, instrument, figures.specimen->relief));
+        if (configuration.scan && figures.specimen->relief.seen_share > 0) {
+            expected = expect(configuration, instrument, made, hidden_uncertainty);
+            append(warnings, warnings_of(configuration, *expected));
+            figures.groups.push_back(figures_of_expectation(configuration, *expected));
         }
+    } else {
+        append(warnings, plan_warnings(configuration, instrument, {}));
     }
+    figures.verdict = verdict_on(configuration, instrument, expected, warnings);
     return figures;
 }
 
@@ -403,17 +446,21 @@ nlohmann::ordered_json instrument_json(const InstrumentFigures& figures, const s
             report["specimen_highest_um"] = relief.highest * um_per_mm;
         }
     }
-    report["warnings"] = figures.warnings;
+    report["verdict"] = json_of(figures.verdict);
+    report["warnings"] = json_of(figures.warnings);
     return report;
 }
 
-std::string instrument_text(const InstrumentFigures& figures, const std::filesystem::path& file) {
-    std::string text = fmt::format("{}: valid\n", file.string());
+std::string instrument_text(const InstrumentFigures& figures, bool all) {
+    std::string text;
     for (const auto& group : figures.groups) {
-        text += fmt::format("{}\n", group.title);
+        std::string lines;
         for (const auto& figure : group.figures) {
-            text += line_of(figure.name, value_text(figure.value), figure.meaning);
+            if (all || matters(figure)) {
+                lines += line_of(figure.name, value_text(figure.value), figure.meaning);
+            }
         }
+        text += lines.empty() ? "" : fmt::format("{}\n{}", group.title, lines);
     }
     if (figures.scan || figures.specimen) {
         text += "Exposures\n";
@@ -432,9 +479,6 @@ std::string instrument_text(const InstrumentFigures& figures, const std::filesys
                             fmt::format("highest {:.6g} um, on {:.1f} % of the field", relief.highest * um_per_mm,
                                         100 * relief.seen_share));
         }
-    }
-    for (const auto& warning : figures.warnings) {
-        text += "  warning: " + warning + "\n";
     }
     return text;
 }

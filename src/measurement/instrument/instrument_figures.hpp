@@ -2,7 +2,9 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
+#include "core/messages/warning.hpp"
 #include "measurement/scene/specimen_view.hpp"
+#include "measurement/scene/verdict.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -43,7 +45,8 @@ struct InstrumentFigures {
     std::vector<FigureGroup> groups;
     std::optional<ScanFigures> scan; // none without [scan]
     std::optional<SpecimenFigures> specimen;
-    std::vector<std::string> warnings;
+    Verdict verdict;
+    std::vector<Warning> warnings;
 };
 
 // Needs no device. Throws InputError.
@@ -51,7 +54,7 @@ InstrumentFigures instrument_figures(const Configuration& configuration);
 
 // file: of the configuration. What is not finite becomes null.
 nlohmann::ordered_json instrument_json(const InstrumentFigures& figures, const std::filesystem::path& file);
-// Tables for a person.
-std::string instrument_text(const InstrumentFigures& figures, const std::filesystem::path& file);
+// Tables for a person: of all figures, or of those that matter at first.
+std::string instrument_text(const InstrumentFigures& figures, bool all);
 
 } // namespace vkfv::measurement

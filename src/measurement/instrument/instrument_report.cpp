@@ -7,6 +7,7 @@
 #include "core/files/user_cache.hpp"
 #include "core/messages/log.hpp"
 #include "measurement/instrument/instrument_figures.hpp"
+#include "measurement/scene/warning_json.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -53,7 +54,8 @@ std::string written(const KeptReport& kept) {
     for (const auto& [level, text] : kept.messages) {
         json["messages"].push_back({level, text});
     }
-    json["text"] = kept.report.text;
+    json["figures_that_matter"] = kept.report.figures_that_matter;
+    json["all_figures"] = kept.report.all_figures;
     json["json"] = kept.report.json;
     return json.dump();
 }
@@ -66,7 +68,11 @@ std::optional<KeptReport> read_kept(const std::string& name) {
     KeptReport kept;
     try {
         const Json json = Json::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-        kept.report = {.text = json.at("text"), .json = json.at("json")};
+        kept.report.figures_that_matter = json.at("figures_that_matter");
+        kept.report.all_figures = json.at("all_figures");
+        kept.report.json = json.at("json");
+        kept.report.verdict = verdict_of_json(kept.report.json.at("verdict"));
+        kept.report.warnings = warnings_of_json(kept.report.json.at("warnings"));
         for (const Json& file : json.at("files")) {
             kept.files.push_back({.path = file.at(0),
                                   .device = file.at(1),
@@ -109,7 +115,11 @@ InstrumentReport instrument_report(const Configuration& configuration, const std
     const auto figures = instrument_figures(configuration);
     KeptReport made{.files = {},
                     .messages = {},
-                    .report = {.text = instrument_text(figures, file), .json = instrument_json(figures, file)}};
+                    .report = {.verdict = figures.verdict,
+                               .warnings = figures.warnings,
+                               .figures_that_matter = instrument_text(figures, false),
+                               .all_figures = instrument_text(figures, true),
+                               .json = instrument_json(figures, file)}};
     made.files = read.stamps();
     made.messages = heard.messages();
     // A log that leaves some messages out has not told what to repeat.

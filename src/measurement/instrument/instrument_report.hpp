@@ -2,17 +2,22 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
+#include "core/messages/warning.hpp"
+#include "measurement/scene/verdict.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace vkfv::measurement {
 
 struct InstrumentReport {
-    std::string text; // for a person
-    nlohmann::ordered_json json;
+    Verdict verdict;
+    std::vector<Warning> warnings;
+    std::string figures_that_matter, all_figures; // tables for a person
+    nlohmann::ordered_json json;                  // all of it
 };
 
 // Of instrument_figures(). The same configuration, by the same program, is not computed again as long as every file

@@ -7,7 +7,6 @@
 #include "measurement/scene/specimen_view.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,8 +67,8 @@ std::optional<scan::StageMotion> stage_motion(const Configuration& configuration
                              configuration.scan ? configuration.scan->positions() : std::vector<double>());
 }
 
-optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
-                                       std::span<const double> focal_heights) {
+optics::Instrument assemble_silently(const Configuration& configuration, const specimen::Specimen& specimen,
+                                     std::span<const double> focal_heights) {
     auto description = configuration.instrument;
     const auto record = specimen::record_of_geometry(specimen);
     description.greatest_defocus = 0;
@@ -89,14 +88,17 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
         source.ring.value().lit_radius = lit_radius;
     }
     auto instrument = assemble_at_its_place(configuration, std::move(description));
-    for (const auto& warning : instrument.warnings) {
-        spdlog::warn(warning);
-    }
     const auto relief =
         relief_of(specimen, configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
-    for (const auto& warning : warning_of_sparse_field(specimen, relief)) {
-        spdlog::warn(warning);
-    }
+    const auto sparse = warning_of_sparse_field(specimen, relief);
+    append(instrument.warnings, sparse);
+    return instrument;
+}
+
+optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
+                                       std::span<const double> focal_heights) {
+    auto instrument = assemble_silently(configuration, specimen, focal_heights);
+    log_warnings(instrument.warnings);
     return instrument;
 }
 
@@ -165,20 +167,23 @@ std::optional<optics::Diffraction> diffraction_of_evaluation(const Configuration
     return configuration.camera ? std::nullopt : make_diffraction(configuration, instrument);
 }
 
+double focus_curve_deviation(const Configuration& configuration, const optics::FirstOrder& first_order) {
+    constexpr double deviations_a_half_width = 1.177;
+    std::optional<double> wavelength;
+    if (configuration.trace.waves) {
+        wavelength = configuration.instrument.spectrum.reference_um * mm_per_um;
+    }
+    return defocus_of_half_contrast(first_order, wavelength) / deviations_a_half_width;
+}
+
 topography::TopographyOptions evaluation_options(const Configuration& configuration,
                                                  const optics::Instrument& instrument) {
     auto options = configuration.topography;
     if (!options.smoothing_steps) {
-        constexpr double deviations_a_half_width = 1.177;
-        std::optional<double> wavelength;
-        if (configuration.trace.waves) {
-            wavelength = configuration.instrument.spectrum.reference_um * mm_per_um;
-        }
-        const double half_width = defocus_of_half_contrast(instrument.first_order, wavelength);
+        const double deviation = focus_curve_deviation(configuration, instrument.first_order);
         const auto positions = configuration.scan->positions();
-        const double step = positions.size() > 1 ? positions[1] - positions[0] : half_width;
-        options.smoothing_steps = topography::suitable_smoothing(half_width / deviations_a_half_width / step,
-                                                                 static_cast<int>(positions.size()));
+        const double step = positions.size() > 1 ? positions[1] - positions[0] : deviation;
+        options.smoothing_steps = topography::suitable_smoothing(deviation / step, static_cast<int>(positions.size()));
     }
     if (!options.focus_measure) {
         options.focus_measure = !configuration.camera          ? topography::where_texture_is_traced

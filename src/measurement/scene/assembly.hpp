@@ -23,6 +23,9 @@ optics::Instrument assemble_instrument(const Configuration& configuration);
 // log.
 optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
                                        std::span<const double> focal_heights);
+// The same, silently: its warnings are in it.
+optics::Instrument assemble_silently(const Configuration& configuration, const specimen::Specimen& specimen,
+                                     std::span<const double> focal_heights);
 // The instrument for its figures alone, not for tracing: its source lights the hemisphere, since the proof of an
 // aim that holds all useful light takes time, and no figure depends on it.
 optics::Instrument assemble_for_figures(const Configuration& configuration);
@@ -61,5 +64,11 @@ std::optional<optics::Diffraction> diffraction_of_evaluation(const Configuration
 // resolution limit where these are longer.
 topography::TopographyOptions evaluation_options(const Configuration& configuration,
                                                  const optics::Instrument& instrument);
+
+// Standard deviation of a focus curve over the height of the focal plane, mm, as a Gaussian that falls to half where
+// waves of four pixels lose half their contrast by defocus; with [diffraction] model = "waves" waves of twice the
+// resolution limit where these are longer. Rays: a disc of light of radius r passes half the contrast of frequency f
+// where 2 pi f r = 2.215, since 2 J1(x) / x is 1/2 there.
+double focus_curve_deviation(const Configuration& configuration, const optics::FirstOrder& first_order);
 
 } // namespace vkfv::measurement

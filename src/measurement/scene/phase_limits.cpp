@@ -135,32 +135,52 @@ PhaseLimits phase_limits(const optics::InstrumentDescription& description, const
             .scatter_fill = scatter_fill_of(specimen.material, incoming, aperture_sine),
             .source_fill = source_fill_of(description, light),
             .texture = texture_of(specimen, instrument, resolution),
+            .filling_radius = light.source->ring ? 0 : light.instrument->first_order.pupil_radius_in_source,
+            .source_radius = light.source->ring ? 0 : light.source->inner_radius(),
             .phase_height = wavelength / (4 * pi * first_order.object_index),
             .depth_of_field = first_order.depth_of_field};
 }
 
-std::vector<std::string> warnings_of(const PhaseLimits& limits) {
-    std::vector<std::string> warnings;
+std::vector<Warning> warnings_of(const PhaseLimits& limits) {
+    std::vector<Warning> warnings;
     if (!limits.fills_pupil()) {
-        warnings.push_back(fmt::format(
-            "Images of waves do not hold here: light from a point of the specimen is spread unevenly over the "
-            "objective's pupil (the source fills {:.2g} of it, the scatter {:.2g}) and interferes with that of its "
-            "neighbours, which vkfv leaves out. Contrasts are up to {:.2g} off, more than {:g}, and heights may be off "
-            "by a depth of field, {:.3g} um. Fill the pupil: {}, or take a specimen that scatters more widely.",
-            limits.source_fill, limits.scatter_fill, limits.contrast_error, most_contrast_error,
-            limits.depth_of_field * um_per_mm,
-            limits.source_fill > 0 ? "a larger source.radius_mm" : "a ring light nearer to the axis"));
+        const bool ring = !(limits.source_fill > 0);
+        const bool by_source = !ring && limits.source_radius < limits.filling_radius;
+        warnings.push_back(
+            {.code = "waves-do-not-hold",
+             .key = by_source ? "source.radius_mm"
+                    : ring    ? "source.elevation_deg"
+                              : "specimen.material",
+             .value = by_source ? number_text(limits.source_radius) : std::string(),
+             .works = by_source ? number_text(limits.filling_radius, Rounding::up)
+                      : ring    ? "a ring nearer to the axis, or a specimen that scatters more widely"
+                                : "scatter = \"lambertian\", or another that scatters more widely",
+             .sentence = fmt::format(
+                 "Images of waves do not hold here: light from a point of the specimen is spread unevenly over the "
+                 "objective's pupil (the source fills {:.2g} of it, the scatter {:.2g}) and interferes with that of "
+                 "its "
+                 "neighbours, which vkfv leaves out. Contrasts are up to {:.2g} off, more than {:g}, and heights may "
+                 "be off "
+                 "by a depth of field, {:.3g} um. Fill the pupil: {}, or take a specimen that scatters more widely.",
+                 limits.source_fill, limits.scatter_fill, limits.contrast_error, most_contrast_error,
+                 limits.depth_of_field * um_per_mm,
+                 limits.source_fill > 0 ? "a larger source.radius_mm" : "a ring light nearer to the axis")});
     }
     if (limits.is_relief_of_phase()) {
-        warnings.push_back(fmt::format("Images of waves do not hold here: the specimen is like a mirror (its scatter "
-                                       "fills {:.2g} of the objective's "
-                                       "aperture), and its texture, {:.3g} um of standard deviation, is below lambda / "
-                                       "(4 pi) = {:.3g} um, so that "
-                                       "it changes the light's phase alone. Its contrast is wrong, largest out of "
-                                       "focus, and heights may be off by "
-                                       "a depth of field, {:.3g} um.",
-                                       limits.scatter_fill, limits.texture * um_per_mm, limits.phase_height * um_per_mm,
-                                       limits.depth_of_field * um_per_mm));
+        warnings.push_back(
+            {.code = "relief-of-phase",
+             .key = "specimen.material",
+             .value = {},
+             .works = "a rougher specimen, or a material that scatters more widely",
+             .sentence = fmt::format("Images of waves do not hold here: the specimen is like a mirror (its scatter "
+                                     "fills {:.2g} of the objective's "
+                                     "aperture), and its texture, {:.3g} um of standard deviation, is below lambda / "
+                                     "(4 pi) = {:.3g} um, so that "
+                                     "it changes the light's phase alone. Its contrast is wrong, largest out of "
+                                     "focus, and heights may be off by "
+                                     "a depth of field, {:.3g} um.",
+                                     limits.scatter_fill, limits.texture * um_per_mm, limits.phase_height * um_per_mm,
+                                     limits.depth_of_field * um_per_mm)});
     }
     return warnings;
 }

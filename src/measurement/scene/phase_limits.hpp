@@ -4,6 +4,7 @@
 // where its relief is so low that it changes the light's phase alone (docs/waves.md).
 #pragma once
 
+#include "core/messages/warning.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "specimen/specimen.hpp"
 
@@ -27,6 +28,8 @@ struct PhaseLimits {
     // resolution leaves; that of a normal distribution with the same median where this is less, so that steps do not
     // count.
     double texture = 0;
+    // Radius of the source that fills the pupil, and that it has, mm; 0: the light is that of a ring.
+    double filling_radius = 0, source_radius = 0;
     double phase_height = 0;   // lambda / (4 pi n): relief that puts a reflected wave a radian off, mm
     double depth_of_field = 0; // mm
 
@@ -42,7 +45,7 @@ PhaseLimits phase_limits(const optics::InstrumentDescription& description, const
                          const specimen::Specimen& specimen);
 
 // A sentence for each condition that is not met.
-std::vector<std::string> warnings_of(const PhaseLimits& limits);
+std::vector<Warning> warnings_of(const PhaseLimits& limits);
 
 // The keys of assets/schemas without their unit, in mm.
 nlohmann::ordered_json json_of(const PhaseLimits& limits);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -50,7 +51,7 @@ Relief relief_of(const specimen::Specimen& specimen, ImageSize pixels, double pi
     return relief;
 }
 
-std::vector<std::string> warning_of_sparse_field(const specimen::Specimen& specimen, const Relief& relief) {
+std::vector<Warning> warning_of_sparse_field(const specimen::Specimen& specimen, const Relief& relief) {
     if (relief.seen_share >= least_seen_share) {
         return {};
     }
@@ -58,15 +59,66 @@ std::vector<std::string> warning_of_sparse_field(const specimen::Specimen& speci
     const bool of_mesh = std::holds_alternative<specimen::Mesh>(specimen.geometry);
     const char* remedy = of_mesh ? "Correct specimen.unit, set centre = true, or look for a vertex far off in the file"
                                  : "Correct the lengths of [specimen] or [detector]";
-    return {fmt::format("{}: it is {:.4g} x {:.4g} um across, from x = {:.4g} and y = {:.4g} um on. {}.",
-                        relief.seen_share > 0
-                            ? fmt::format("The specimen fills {} of the field of view", percent(relief.seen_share))
-                            : std::string("The detector does not see the specimen"),
-                        (record.x_max - record.x_min) * um_per_mm, (record.y_max - record.y_min) * um_per_mm,
-                        record.x_min * um_per_mm, record.y_min * um_per_mm, remedy)};
+    return {{.code = relief.seen_share > 0 ? "sparse-field" : "specimen-not-seen",
+             .key = of_mesh ? "specimen.unit" : "specimen.size_mm",
+             .value = {},
+             .works = remedy,
+             .sentence =
+                 fmt::format("{}: it is {:.4g} x {:.4g} um across, from x = {:.4g} and y = {:.4g} um on. {}.",
+                             relief.seen_share > 0
+                                 ? fmt::format("The specimen fills {} of the field of view", percent(relief.seen_share))
+                                 : std::string("The detector does not see the specimen"),
+                             (record.x_max - record.x_min) * um_per_mm, (record.y_max - record.y_min) * um_per_mm,
+                             record.x_min * um_per_mm, record.y_min * um_per_mm, remedy)}};
 }
 
-std::vector<std::string> warning_of_lost_light(const trace::Image& image) {
+std::vector<Warning> warning_of_no_light(const Configuration& configuration, const optics::Instrument& instrument,
+                                         std::uint64_t rays, const std::string& where) {
+    const auto& splitter = configuration.instrument.splitter;
+    const bool all_by_splitter = std::ranges::none_of(configuration.instrument.sources(),
+                                                      [](const auto* source) { return source->ring.has_value(); });
+    const auto impossible = [&](const char* key, const char* works, const std::string& why) {
+        return std::vector<Warning>{{.code = "no-light",
+                                     .key = key,
+                                     .value = "0",
+                                     .works = works,
+                                     .sentence = fmt::format("No light can reach the detector: {}.", why)}};
+    };
+    if (all_by_splitter && splitter.reflectance == 0) {
+        return impossible("beam_splitter.reflectance", "0.5", "the beam splitter reflects none of it to the specimen");
+    }
+    if (splitter.transmittance == 0) {
+        return impossible("beam_splitter.transmittance", "0.5", "the beam splitter lets none of it pass");
+    }
+    if (configuration.specimen && configuration.specimen->material.lobes.empty()) {
+        return impossible("specimen.material", "a scatter model", "the specimen absorbs all of it");
+    }
+    const auto of_rays = [&](const std::string& bound) {
+        return std::vector<Warning>{
+            {.code = "no-ray-arrived",
+             .key = "trace.rays",
+             .value = std::to_string(configuration.trace.rays),
+             .works = "more rays, or what brings light there",
+             .sentence = fmt::format("No ray of {} arrived at the detector{}.{} {}; or launch more rays.", rays, bound,
+                                     where, likely_causes)}};
+    };
+    if (configuration.trace.estimator == trace::Estimator::backward) { // whose paths are no shares of the flux
+        return of_rays("");
+    }
+    double launched = 0; // W, of which every ray carries the same part
+    for (const auto* light : instrument.lights()) {
+        launched +=
+            light->flux * light->aimed_share() *
+            (configuration.trace.nonsequential ? 1 : light->splitter_reflectance * light->splitter_transmittance);
+    }
+    constexpr double error = 0.05;
+    const double share = 1 - std::pow(error, 1 / static_cast<double>(rays));
+    return of_rays(fmt::format(": at most {:.2g} W of the {:.3g} W that were sent out come there, with 95 % confidence",
+                               share * launched, launched));
+}
+
+std::vector<Warning> warning_of_lost_light(const Configuration& configuration, const optics::Instrument& instrument,
+                                           const trace::Image& image) {
     const auto& ledger = image.ledger;
     const double detected = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
     if (!(detected > 0)) {
@@ -77,15 +129,19 @@ std::vector<std::string> warning_of_lost_light(const trace::Image& image) {
                                       ? ""
                                       : fmt::format(" Most of it ends as \"{}\" ({} of what is emitted).", most->name,
                                                     percent(most->power / ledger.emitted));
-        return {fmt::format("No light reaches the detector.{} {}; or launch more rays.", where, likely_causes)};
+        return warning_of_no_light(configuration, instrument, image.rays, where);
     }
     const double brightest = *std::ranges::max_element(image.flux.values);
     if (brightest < std::numeric_limits<float>::min()) {
-        return {
-            fmt::format("The brightest pixel has {:.3g} W, and an image holds no less than {:.3g} W: its pixels are 0 "
-                        "or lose their digits. A transmittance or reflectance may be too small; source.flux_W "
-                        "scales all light.",
-                        brightest, std::numeric_limits<float>::min())};
+        return {{.code = "faint-light",
+                 .key = "source.flux_W",
+                 .value = {},
+                 .works = "more flux",
+                 .sentence = fmt::format(
+                     "The brightest pixel has {:.3g} W, and an image holds no less than {:.3g} W: its pixels are 0 "
+                     "or lose their digits. A transmittance or reflectance may be too small; source.flux_W "
+                     "scales all light.",
+                     brightest, std::numeric_limits<float>::min())}};
     }
     double beside = 0, met = 0;
     for (const auto& entry : ledger.entries) {
@@ -97,8 +153,12 @@ std::vector<std::string> warning_of_lost_light(const trace::Image& image) {
                    : 0;
     }
     if (beside > most_light_beside * (beside + met)) {
-        return {fmt::format("{} of the light that comes as far falls beside the specimen. {}.",
-                            percent(beside / (beside + met)), likely_causes)};
+        return {{.code = "light-beside-specimen",
+                 .key = "specimen.size_mm",
+                 .value = {},
+                 .works = "a length in the key's unit, or a specimen on the axis",
+                 .sentence = fmt::format("{} of the light that comes as far falls beside the specimen. {}.",
+                                         percent(beside / (beside + met)), likely_causes)}};
     }
     return {};
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
+#include "core/messages/warning.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/interface/tracer.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,10 +24,18 @@ struct Relief {
 Relief relief_of(const specimen::Specimen& specimen, ImageSize pixels, double pitch);
 
 // A sentence where the specimen fills less than half of the field.
-std::vector<std::string> warning_of_sparse_field(const specimen::Specimen& specimen, const Relief& relief);
+std::vector<Warning> warning_of_sparse_field(const specimen::Specimen& specimen, const Relief& relief);
 
 // A sentence where no light was detected, or less than the numbers of an image hold, or where nearly all that came as
 // far fell beside the specimen: where it went, and what that may come from.
-std::vector<std::string> warning_of_lost_light(const trace::Image& image);
+std::vector<Warning> warning_of_lost_light(const Configuration& configuration, const optics::Instrument& instrument,
+                                           const trace::Image& image);
+
+// Of images in which none of so many rays was detected. Either no light can arrive, which the configuration proves, or
+// the sentence says what share of it may: with p the share of the rays that arrive, none of N does with a probability
+// (1 - p)^N, which is 5 % at the bound (Clopper and Pearson, Biometrika 26, 404 (1934), one-sided). Backward paths
+// carry no shares of the flux, and have no bound. where: a sentence with a space before it, or nothing.
+std::vector<Warning> warning_of_no_light(const Configuration& configuration, const optics::Instrument& instrument,
+                                         std::uint64_t rays, const std::string& where = {});
 
 } // namespace vkfv::measurement

@@ -42,18 +42,24 @@ trace::WaveSizes sizes_of(const optics::WaveOptions& options, const optics::Inst
             .pixels = light.detector_pixels()};
 }
 
-std::optional<std::string> warning_of_host(const std::vector<optics::WaveOptions>& options,
-                                           const optics::Instrument& instrument) {
+std::optional<Warning> warning_of_host(const std::vector<optics::WaveOptions>& options,
+                                       const optics::Instrument& instrument) {
     std::uint64_t memory = 0;
     for (std::size_t k = 0; k < options.size(); ++k) {
         memory += trace::wave_memory_of_host(sizes_of(options[k], *instrument.lights()[k]), core_count()).all();
     }
     const std::uint64_t there = memory_of_host();
-    return memory > there ? std::optional(fmt::format(
-                                "Images as waves make them take {} of memory, and this machine has {}. Take fewer "
-                                "detector.pixels or fewer diffraction.cells, or a device that has as much.",
-                                bytes_text(memory), bytes_text(there)))
-                          : std::nullopt;
+    if (memory <= there) {
+        return std::nullopt;
+    }
+    return Warning{.code = "memory",
+                   .key = "detector.pixels",
+                   .value = text_of(instrument.detector_pixels()),
+                   .works = pixels_that_fit(instrument.detector_pixels(), memory, there),
+                   .sentence =
+                       fmt::format("Images as waves make them take {} of memory, and this machine has {}. Take fewer "
+                                   "detector.pixels or fewer diffraction.cells, or a device that has as much.",
+                                   bytes_text(memory), bytes_text(there))};
 }
 
 } // namespace
@@ -74,9 +80,9 @@ void refuse_beyond_host(const optics::WaveOptions& options, const optics::Instru
     }
 }
 
-std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, const Configuration& configuration,
-                                          const optics::Instrument& instrument, int cells, int tiles) {
-    std::vector<std::string> warnings;
+std::vector<Warning> wave_warnings_of(const vulkan::DeviceReport& device, const Configuration& configuration,
+                                      const optics::Instrument& instrument, int cells, int tiles) {
+    std::vector<Warning> warnings;
     if (!configuration.trace.waves || configuration.trace.nonsequential) {
         return warnings;
     }
@@ -84,19 +90,24 @@ std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, co
     const auto options = options_of_lights(configuration, instrument, cells, tiles);
     for (std::size_t k = 0; k < options.size(); ++k) {
         const int asked = optics::parts_of(options[k], *lights[k]);
-        std::string warning;
+        Warning warning{.code = "memory",
+                        .key = "detector.pixels",
+                        .value = text_of(lights[k]->detector_pixels()),
+                        .works = "fewer, fewer diffraction.cells, or a device with more memory",
+                        .sentence = {}};
         try {
             const int parts = trace::waves_on_device(options[k], *lights[k], device).parts;
             if (parts == asked) {
                 continue;
             }
-            warning = fmt::format("{} has room for light of waves sorted in {} parts of a pixel's side, where {} are "
-                                  "asked for: finer waves fold back.",
-                                  device.name, parts, asked);
+            warning.sentence =
+                fmt::format("{} has room for light of waves sorted in {} parts of a pixel's side, where {} are "
+                            "asked for: finer waves fold back.",
+                            device.name, parts, asked);
         } catch (const InputError& error) {
             const InputProblem& problem = error.problem();
-            warning = fmt::format("{} cannot make images as waves make them: {}, where {} are possible. {}",
-                                  device.name, problem.found, problem.expected, problem.remedy);
+            warning.sentence = fmt::format("{} cannot make images as waves make them: {}, where {} are possible. {}",
+                                           device.name, problem.found, problem.expected, problem.remedy);
         }
         if (std::ranges::find(warnings, warning) == warnings.end()) {
             warnings.push_back(warning);
@@ -105,7 +116,7 @@ std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, co
     return warnings;
 }
 
-std::vector<std::string> wave_warnings_of_device(const Configuration& configuration, int cells, int tiles) {
+std::vector<Warning> wave_warnings_of_device(const Configuration& configuration, int cells, int tiles) {
     if (!configuration.trace.waves || configuration.trace.nonsequential) {
         return {};
     }
@@ -120,7 +131,7 @@ std::vector<std::string> wave_warnings_of_device(const Configuration& configurat
     }
     if (configuration.trace.device == "host") {
         const auto warning = warning_of_host(options, instrument);
-        return warning ? std::vector{*warning} : std::vector<std::string>();
+        return warning ? std::vector{*warning} : std::vector<Warning>();
     }
     try {
         const auto reports = vulkan::list_devices();

@@ -80,31 +80,44 @@ WaveLimits worst_of(const std::vector<WaveLimits>& limits) {
     return worst;
 }
 
-std::vector<std::string> warnings_of(const WaveLimits& limits) {
-    std::vector<std::string> warnings;
+std::vector<Warning> warnings_of(const WaveLimits& limits) {
+    std::vector<Warning> warnings;
     const auto worst =
         std::ranges::max_element(limits.points, {}, [](const auto& point) { return point.error.difference; });
     if (worst != limits.points.end() && worst->error.difference > most_error) {
         const auto& error = worst->error;
         const bool of_cells = limits.points.front().error.difference > 0.5 * error.difference;
-        warnings.push_back(fmt::format(
-            "Images as waves make them: {} the contrast of waves of {:.3g} um at z = {:.3g} um is off by {:.2g}, phase "
-            "included ({:.2g} instead of {:.2g}). {}",
-            std::string_view(worst->name) == "axis" ? "in the middle of the field"
-                                                    : fmt::format("at the {} of the field", worst->name),
-            um_per_mm / glm::length(error.frequency), error.height * um_per_mm, error.difference,
-            std::abs(error.filtered), std::abs(error.waves),
-            of_cells ? "Take more diffraction.cells."
-            : limits.tiles == 1
-                ? "The filter is that of the axis: trust what lies near it, or take diffraction.tiles = 3 or more."
-                : "Take more diffraction.tiles or diffraction.cells."));
+        const bool of_tiles = !of_cells && limits.tiles == 1;
+        warnings.push_back(
+            {.code = "coarse-waves",
+             .key = of_tiles ? "diffraction.tiles" : "diffraction.cells",
+             .value = std::to_string(of_tiles ? limits.tiles : limits.cells),
+             .works = of_tiles ? "3" : std::to_string(2 * limits.cells),
+             .sentence = fmt::format(
+                 "Images as waves make them: {} the contrast of waves of {:.3g} um at z = {:.3g} um is off by {:.2g}, "
+                 "phase "
+                 "included ({:.2g} instead of {:.2g}). {}",
+                 std::string_view(worst->name) == "axis" ? "in the middle of the field"
+                                                         : fmt::format("at the {} of the field", worst->name),
+                 um_per_mm / glm::length(error.frequency), error.height * um_per_mm, error.difference,
+                 std::abs(error.filtered), std::abs(error.waves),
+                 of_cells ? "Take more diffraction.cells."
+                 : limits.tiles == 1
+                     ? "The filter is that of the axis: trust what lies near it, or take diffraction.tiles = 3 or more."
+                     : "Take more diffraction.tiles or diffraction.cells.")});
     }
     if (limits.folded_contrast > 0) {
-        warnings.push_back(fmt::format(
-            "Light of waves is sorted in {} parts of a pixel's side, where the numerical aperture asks for {}: finer "
-            "waves fold back, and their contrast is off by up to {:.2g}. Take fewer detector.pixels, fewer "
-            "diffraction.cells, or a device with more memory.",
-            limits.parts, limits.asked_parts, limits.folded_contrast));
+        warnings.push_back(
+            {.code = "folded-waves",
+             .key = "diffraction.cells",
+             .value = std::to_string(limits.cells),
+             .works = "fewer, fewer detector.pixels, or a device with more memory",
+             .sentence = fmt::format(
+                 "Light of waves is sorted in {} parts of a pixel's side, where the numerical aperture asks for {}: "
+                 "finer "
+                 "waves fold back, and their contrast is off by up to {:.2g}. Take fewer detector.pixels, fewer "
+                 "diffraction.cells, or a device with more memory.",
+                 limits.parts, limits.asked_parts, limits.folded_contrast)});
     }
     return warnings;
 }

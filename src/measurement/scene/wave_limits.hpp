@@ -2,6 +2,7 @@
 // aliasing where light is sorted more coarsely than the waves require.
 #pragma once
 
+#include "core/messages/warning.hpp"
 #include "optics/waves/filter_error.hpp"
 #include "optics/waves/pupil_filter.hpp"
 
@@ -36,7 +37,7 @@ std::vector<WaveLimits> limits_of_lights(const optics::WaveOptions& options, con
 WaveLimits worst_of(const std::vector<WaveLimits>& limits);
 
 // Where the worst point's contrast is off by more than 0.1, and where light folds back; some sentences each.
-std::vector<std::string> warnings_of(const WaveLimits& limits);
+std::vector<Warning> warnings_of(const WaveLimits& limits);
 
 nlohmann::ordered_json json_of(const WaveLimits& limits);
 // A line a point, for a terminal.

@@ -7,6 +7,7 @@
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/scene/host_memory.hpp"
+#include "measurement/scene/warning_json.hpp"
 #include "measurement/scene/working_devices.hpp"
 #include "scan/store.hpp"
 #include "vulkan/device.hpp"
@@ -101,6 +102,25 @@ CameraFigures camera_of_probe(const Configuration& configuration, const trace::I
     return camera_figures(std::span(&note, 1));
 }
 
+std::vector<Warning> warnings_of_memory(const Configuration& configuration, const Forecast& found) {
+    std::vector<Warning> warnings;
+    const ImageSize pixels = configuration.instrument.detector_pixels;
+    const auto warn_where = [&](std::uint64_t takes, std::uint64_t there, const std::string& owner) {
+        if (there > 0 && takes > there) {
+            warnings.push_back({.code = "memory",
+                                .key = "detector.pixels",
+                                .value = text_of(pixels),
+                                .works = pixels_that_fit(pixels, takes, there),
+                                .sentence = fmt::format("It takes {} of memory, and {} has {}. Take fewer "
+                                                        "detector.pixels.",
+                                                        bytes_text(takes), owner, bytes_text(there))});
+        }
+    };
+    warn_where(found.device_memory, found.device_memory_there, found.device);
+    warn_where(found.host_memory, found.host_memory_there, "this machine");
+    return warnings;
+}
+
 } // namespace
 
 Forecast forecast(const Configuration& configuration) {
@@ -142,6 +162,7 @@ Forecast forecast(const Configuration& configuration) {
     result.device_memory_there = probe.device_memory_there;
     result.host_memory = peak_memory() + (configuration.scan ? bytes_a_pixel_of_run * pixels.count() : 0);
     result.host_memory_there = memory_of_host();
+    append(result.warnings, warnings_of_memory(configuration, result));
     result.disk = static_cast<std::uint64_t>(result.images) * image_bytes(pixels) +
                   (configuration.scan ? results_bytes(configuration) : 0);
     result.disk_there = free_bytes(configuration.output_directory);
@@ -165,7 +186,7 @@ nlohmann::ordered_json json_of(const Forecast& forecast) {
             {"detected_rays_per_pixel", forecast.detected_rays_per_pixel},
             {"noise", std::isfinite(forecast.noise) ? nlohmann::ordered_json(forecast.noise) : nullptr},
             {"camera", std::move(camera)},
-            {"warnings", forecast.warnings},
+            {"warnings", json_of(forecast.warnings)},
             {"seconds_per_image", forecast.seconds_per_image},
             {"seconds", forecast.seconds},
             {"device_memory_bytes", forecast.device_memory},
@@ -175,6 +196,13 @@ nlohmann::ordered_json json_of(const Forecast& forecast) {
             {"disk_bytes", forecast.disk},
             {"disk_there_bytes", forecast.disk_there},
             {"fits", forecast.fits()}};
+}
+
+std::string time_sentence(const Forecast& forecast) {
+    return fmt::format("It takes {} on {}{}: {} images of {:.3g} s, without start and evaluation.",
+                       duration_text(forecast.seconds), forecast.device,
+                       forecast.devices > 1 ? fmt::format(", {} devices at a time", forecast.devices) : "",
+                       forecast.images, forecast.seconds_per_image);
 }
 
 std::string summary(const Forecast& forecast) {
@@ -204,9 +232,6 @@ std::string summary(const Forecast& forecast) {
     add("memory of the host",
         fmt::format("about {} of {}", bytes_text(forecast.host_memory), bytes_text(forecast.host_memory_there)));
     add("disk", fmt::format("{} of {} that are free", bytes_text(forecast.disk), bytes_text(forecast.disk_there)));
-    for (const auto& warning : forecast.warnings) {
-        text += "  warning: " + warning + "\n";
-    }
     return text;
 }
 

@@ -23,7 +23,7 @@ struct Forecast {
     double detected_rays_per_pixel = 0;  // mean
     double noise = 0;                    // root mean square of the pixels' standard errors over their mean light
     std::optional<CameraFigures> camera; // of the camera's image of it; its exposure time is the probe's own
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     double seconds_per_image = 0; // wall clock
     double seconds = 0;           // of all images
 
@@ -42,7 +42,9 @@ struct Forecast {
 Forecast forecast(const Configuration& configuration);
 
 nlohmann::ordered_json json_of(const Forecast& forecast);
-// Lines for a terminal.
+// How long all of it takes, on what, for a verdict.
+std::string time_sentence(const Forecast& forecast);
+// Lines for a terminal, without the warnings.
 std::string summary(const Forecast& forecast);
 
 } // namespace vkfv::measurement

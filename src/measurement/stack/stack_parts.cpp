@@ -6,7 +6,9 @@
 #include "core/threads/background.hpp"
 #include "measurement/image/camera_images.hpp"
 #include "measurement/image/exposure.hpp"
+#include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/assembly.hpp"
+#include "measurement/scene/specimen_view.hpp"
 #include "measurement/scene/stage_figures.hpp"
 #include "report/declared_figures.hpp"
 #include "scan/repair.hpp"
@@ -14,11 +16,10 @@
 #include "specimen/geometry_digest.hpp"
 #include "specimen/kinds.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 
 namespace vkfv::measurement {
@@ -30,51 +31,58 @@ constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
 constexpr double most_height_noise = 0.1, good_height_noise = 0.05;
 
 // How noisy the rays left the images, where that is most of what is measured, or coarse beside the focus curves.
-void warn_of_noise(const Configuration& configuration, const Evaluation& evaluation) {
+std::vector<Warning> warnings_of_noise(const Configuration& configuration, const Evaluation& evaluation) {
+    const auto of_rays = [&](const char* code, double share, double wanted, const std::string& what) {
+        return std::vector<Warning>{
+            {.code = code,
+             .key = "trace.rays",
+             .value = std::to_string(configuration.trace.rays),
+             .works = rays_for_noise(configuration, share, wanted),
+             .sentence = fmt::format("{} {}", what, remedy_of_noise(configuration, share, wanted))}};
+    };
     const auto& whole = evaluation.topography.stack;
     const double width = whole.curve_width_steps * configuration.scan->z_step;
     const double height_noise = width > 0 ? evaluation.height_noise / width : 0;
     if (whole.image_noise > most_image_noise) {
-        spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
-                     100 * whole.image_noise, remedy_of_noise(configuration, whole.image_noise, good_image_noise));
-    } else if (!configuration.camera && height_noise > most_height_noise) { // a camera's own noise is no lack of rays
-        spdlog::warn(
-            "The images' noise is {:.2g} % of their brightness, and scatters the heights by {:.2g} um, {:.0f} % "
-            "of their focus curves' width. {}",
-            100 * whole.image_noise, evaluation.height_noise * um_per_mm, 100 * height_noise,
-            remedy_of_noise(configuration, height_noise, good_height_noise));
+        return of_rays("few-rays", whole.image_noise, good_image_noise,
+                       fmt::format("The images' noise is {:.0f} % of their brightness: what is measured is little or "
+                                   "rough.",
+                                   100 * whole.image_noise));
     }
+    if (!configuration.camera && height_noise > most_height_noise) { // a camera's own noise is no lack of rays
+        return of_rays("ray-noise-without-camera", height_noise, good_height_noise,
+                       fmt::format("The images' noise is {:.2g} % of their brightness, and scatters the heights by "
+                                   "{:.2g} um, {:.0f} % of their focus curves' width.",
+                                   100 * whole.image_noise, evaluation.height_noise * um_per_mm, 100 * height_noise));
+    }
+    return {};
 }
 
 } // namespace
 
-namespace {
-
-// surfaces: none: the specimen is made.
-specimen::Specimen specimen_of(const Configuration& configuration, Surfaces* surfaces) {
+std::shared_ptr<const StackScene::Parts> StackScene::make_parts(const Configuration& configuration,
+                                                                Surfaces* surfaces) {
+    auto parts = std::make_shared<Parts>();
     enter_stage("specimen");
-    return surfaces != nullptr ? surfaces->of(configuration).specimen : make_specimen(configuration);
-}
-
-std::shared_ptr<const StackScene::Parts> parts_of(const Configuration& configuration, specimen::Specimen specimen) {
-    auto parts = std::make_shared<StackScene::Parts>();
-    parts->specimen = std::move(specimen);
+    parts->specimen = surfaces != nullptr ? surfaces->of(configuration).specimen : make_specimen(configuration);
     enter_stage("instrument");
     parts->instrument = assemble_instrument(configuration, parts->specimen, configuration.scan->positions());
     return parts;
 }
 
-} // namespace
-
 StackScene::StackScene(const Configuration& its_configuration)
-    : StackScene(its_configuration, parts_of(its_configuration, specimen_of(its_configuration, nullptr))) {}
-
-StackScene::StackScene(const Configuration& its_configuration, Surfaces& surfaces)
-    : StackScene(its_configuration, parts_of(its_configuration, specimen_of(its_configuration, &surfaces))) {}
+    : StackScene(its_configuration, make_parts(its_configuration)) {
+    log_warnings(planned);
+}
 
 StackScene::StackScene(const Configuration& its_configuration, std::shared_ptr<const Parts> parts)
     : parts_(std::move(parts)), configuration(its_configuration), positions(configuration.scan->positions()),
-      specimen(parts_->specimen), instrument(parts_->instrument) {}
+      specimen(parts_->specimen), instrument(parts_->instrument),
+      planned(plan_warnings(configuration, instrument,
+                            relief_of(specimen, pixels(), instrument.first_order.pixel_pitch))),
+      warnings(planned) {
+    append(warnings, instrument.warnings);
+}
 
 scan::StackDescription StackScene::description(const trace::TracerIdentity& tracer) const {
     std::string identity = image_identity(configuration, specimen::geometry_digest(specimen), tracer);
@@ -129,8 +137,12 @@ void GrowingEvaluation::add(int image, Grid<float> values) {
 EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::TracerIdentity& tracer) {
     const Configuration& configuration = scene_.configuration;
     const auto camera = camera_figures(store);
+    std::vector<Warning> warnings;
     if (!any_light_ || (camera && !(camera->light.mean > 0))) {
-        spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
+        append(warnings, warning_of_no_light(configuration, scene_.instrument,
+                                             scene_.positions.size() *
+                                                 trace::launched_rays(configuration.trace, configuration.instrument),
+                                             " vkfv image of one position tells where it goes."));
     }
     enter_stage("heights and truth");
     std::optional<PhaseLimits> phase;
@@ -151,24 +163,19 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
     stack.source.ledger = scan::mean_ledger(store.folder());
     if (wave_limits_) {
         const WaveLimits limits = wave_limits_->get();
-        auto warnings = warnings_of(limits);
-        std::ranges::move(warnings_of(phase.value()), std::back_inserter(warnings));
-        for (const auto& warning : warnings) {
-            spdlog::warn(warning);
-        }
+        append(warnings, warnings_of(limits));
+        append(warnings, warnings_of(phase.value()));
         stack.origin["waves"] = json_of(limits);
         stack.origin["waves"].update(report::as_declared("results.waves", json_of(*phase)));
-        stack.origin["waves"]["warnings"] = warnings;
     }
     if (camera) {
         stack.origin["camera"] = camera_json(*configuration.camera, *camera);
-        const auto warnings = warnings_of_images(configuration, *camera);
-        stack.origin["camera"]["warnings"] = warnings;
-        for (const auto& warning : warnings) {
-            spdlog::warn(warning);
-        }
+        append(warnings, warnings_of_images(configuration, *camera));
     }
-    warn_of_noise(configuration, stack.evaluation);
+    append(warnings, warnings_of_noise(configuration, stack.evaluation));
+    log_warnings(warnings);
+    stack.warnings = scene_.warnings;
+    append(stack.warnings, warnings);
     if (scan::was_repaired(store.folder())) {
         stack.origin["repaired"] = true;
     }

@@ -30,11 +30,12 @@ class StackScene {
         optics::Instrument instrument;
     };
 
-    // Throws InputError. The configuration must outlive it.
+    // surfaces: where the specimen may be there already; null: it is made. Throws InputError.
+    static std::shared_ptr<const Parts> make_parts(const Configuration& configuration, Surfaces* surfaces = nullptr);
+
+    // The scene of the configuration, which must outlive it. The log gets the plan's warnings. Throws InputError.
     explicit StackScene(const Configuration& configuration);
-    // The same, of a surface that may be there already.
-    StackScene(const Configuration& configuration, Surfaces& surfaces);
-    // The same of parts that were made for another configuration with the same ones.
+    // The scene of a configuration whose parts were made for another one. Leaves the log alone.
     StackScene(const Configuration& configuration, std::shared_ptr<const Parts> parts);
 
     ImageSize pixels() const { return configuration.instrument.detector_pixels; }
@@ -49,6 +50,8 @@ class StackScene {
     std::vector<double> positions; // focal heights, mm
     const specimen::Specimen& specimen;
     const optics::Instrument& instrument;
+    std::vector<Warning> planned;  // warnings of the plan
+    std::vector<Warning> warnings; // these and the instrument's, which are in the log
 };
 
 // What images are made of their light by: the camera, if there is one. The configuration must outlive it.

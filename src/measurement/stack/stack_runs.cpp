@@ -158,10 +158,12 @@ StackResult StackRuns::measure(const Configuration& configuration, Progress& pro
     if (!light_ || light_->key != key) {
         light_.reset(); // before the next takes memory
         // The surface alone may be that of the next stack, of another material or instrument.
-        const StackScene made = others.more ? StackScene(configuration, surfaces_) : StackScene(configuration);
-        light_ = Light{.key = key, .parts = made.parts(), .tracer = nullptr};
+        light_ = Light{.key = key,
+                       .parts = StackScene::make_parts(configuration, others.more ? &surfaces_ : nullptr),
+                       .tracer = nullptr};
     }
     const StackScene scene(configuration, light_->parts);
+    log_warnings(scene.planned);
     StackResult result;
     work_with_devices(
         devices, [&](const WorkingDevices& working) { result = trace_and_evaluate(scene, working, others, progress); });

@@ -77,7 +77,7 @@ struct MeasuredImaging {
     double least_spot_offset = 0;
     double field_curvature = 0;
     double field_curvature_corner = 0;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 MeasuredImaging measure_imaging(const InstrumentDescription& description, const AxialLayout& layout,
                                 const ImagingTrain& imaging);
@@ -119,7 +119,7 @@ struct Illumination {
     double source_magnification = 0;
     double pupil_radius_in_source = 0;
     double field_stop_magnification = 0;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 Illumination place_ring(const InstrumentDescription& description, const AxialLayout& layout,
                         const MeasuredImaging& measured);

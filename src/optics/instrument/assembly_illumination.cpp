@@ -59,7 +59,7 @@ struct PupilFilling {
     double to_objective = 0; // from the illuminator's last vertex to the objective's
     double magnification = 0;
     double pupil_radius_in_source = 0;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 PupilFilling fill_pupil(const InstrumentDescription& description, const Prescription& prescribed,
@@ -84,16 +84,35 @@ PupilFilling fill_pupil(const InstrumentDescription& description, const Prescrip
     const double filling_radius =
         std::min(inner_radius, description.illumination_aperture_radius.value_or(inner_radius));
     if (filling_radius < 0.98 * result.pupil_radius_in_source) {
+        // What limits the light is the stop at the source where that is the smaller one.
+        const bool by_stop = filling_radius < inner_radius;
+        const bool rectangle = description.source.rectangle.has_value();
+        const auto* const sides = rectangle ? &*description.source.rectangle : nullptr;
+        const char* const key = by_stop                ? "illumination.aperture_radius_mm"
+                                : !rectangle           ? "source.radius_mm"
+                                : sides->x <= sides->y ? "source.width_mm"
+                                                       : "source.height_mm";
+        const double times = rectangle && !by_stop ? 2 : 1; // a side, not its half
         result.warnings.push_back(
-            fmt::format("The source does not fill the objective's pupil: its {} is {:.4g} mm, filling takes "
-                        "{:.4g} mm.",
-                        description.source.rectangle ? "shorter side's half" : "radius", filling_radius,
-                        result.pupil_radius_in_source));
+            {.code = "pupil-not-filled",
+             .key = key,
+             .value = number_text(times * filling_radius),
+             .works = number_text(times * result.pupil_radius_in_source, Rounding::up),
+             .sentence = fmt::format(
+                 "The source does not fill the objective's pupil: its {} is {:.4g} mm, filling takes "
+                 "{:.4g} mm.",
+                 rectangle ? "shorter side's half" : "radius", filling_radius, result.pupil_radius_in_source)});
     }
     const double image_to_pupil = result.to_objective + pupil.distance - glass_shift - source_image.distance;
     if (!(std::abs(image_to_pupil) < 0.05 * efl_objective)) {
-        result.warnings.push_back(fmt::format(
-            "The source is imaged {:.3g} mm in front of the objective's pupil instead of into it.", image_to_pupil));
+        result.warnings.push_back(
+            {.code = "source-beside-pupil",
+             .key = "illumination.objective_distance_mm",
+             .value = number_text(result.to_objective),
+             .works = number_text(result.to_objective - image_to_pupil),
+             .sentence =
+                 fmt::format("The source is imaged {:.3g} mm in front of the objective's pupil instead of into it.",
+                             image_to_pupil)});
     }
     return result;
 }
@@ -165,14 +184,19 @@ double field_stop_magnification(const AxialLayout& layout, const std::vector<Sur
 }
 
 // Warns if the field stop's image leaves part of the detector's field dark.
-std::vector<std::string> warning_of_field_stop(const AxialLayout& layout, const Surface& stop, double magnification) {
+std::vector<Warning> warning_of_field_stop(const AxialLayout& layout, const Surface& stop, double magnification) {
     const double lit_radius = std::abs(magnification) * std::sqrt(stop.semi_diameter_squared);
     if (!(lit_radius < layout.field_half_diagonal)) {
         return {};
     }
-    return {fmt::format("The field stop's image, {:.4g} mm in radius on the specimen, does not cover the "
-                        "detector's field, {:.4g} mm to its corners.",
-                        lit_radius, layout.field_half_diagonal)};
+    constexpr double margin = 1.05; // of a rim that aberrations blur
+    return {{.code = "small-field-stop",
+             .key = "illumination.field_stop_radius_mm",
+             .value = number_text(std::sqrt(stop.semi_diameter_squared)),
+             .works = number_text(margin * layout.field_half_diagonal / std::abs(magnification), Rounding::up),
+             .sentence = fmt::format("The field stop's image, {:.4g} mm in radius on the specimen, does not cover the "
+                                     "detector's field, {:.4g} mm to its corners.",
+                                     lit_radius, layout.field_half_diagonal)}};
 }
 
 // stop: index of the surface about whose centre light is sampled.

@@ -176,9 +176,14 @@ MeasuredImaging measure_imaging(const InstrumentDescription& description, const 
     const double relative_light = at_corner.area() / on_axis.area();
     if (relative_light < 0.9) {
         measured.warnings.push_back(
-            fmt::format("The corners of the detector's field receive {:.0f} % of the axial light: lens edges clip "
-                        "their cones.",
-                        100 * relative_light));
+            {.code = "dark-corners",
+             .key = "detector.size_mm",
+             .value = number_text(description.detector_width),
+             .works = "a smaller detector, or lenses with larger semi_diameter_mm",
+             .sentence =
+                 fmt::format("The corners of the detector's field receive {:.0f} % of the axial light: lens edges clip "
+                             "their cones.",
+                             100 * relative_light)});
     }
     return measured;
 }

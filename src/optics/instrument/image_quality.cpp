@@ -299,32 +299,58 @@ void measure_colour(ImageQuality& quality, const Setting& setting, const Outline
 }
 
 // Warnings about lenses that clip the light, and pixels that do not suit the optics.
-std::vector<std::string> warnings_of(const ImageQuality& quality, const FirstOrder& first_order) {
-    std::vector<std::string> warnings;
+std::vector<Warning> warnings_of(const ImageQuality& quality, const InstrumentDescription& description,
+                                 const FirstOrder& first_order) {
+    std::vector<Warning> warnings;
     if (const std::string lenses = list_of_lenses(quality.axis_clipping); !lenses.empty()) {
-        warnings.push_back("The cone on the axis is not limited by the aperture stop alone: " + lenses + ".");
+        warnings.push_back(
+            {.code = "clipped-axis",
+             .key = "objective.aperture_stop_radius_mm",
+             .value = description.aperture_stop_radius ? number_text(*description.aperture_stop_radius) : std::string(),
+             .works = "a smaller stop, or lenses with larger semi_diameter_mm",
+             .sentence = "The cone on the axis is not limited by the aperture stop alone: " + lenses + "."});
     }
     if (quality.corner.relative_light < least_relative_light) {
         if (const std::string lenses = list_of_lenses(quality.corner_clipping); !lenses.empty()) {
-            warnings.push_back("The cone from the field's corner is clipped by " + lenses + ".");
+            warnings.push_back({.code = "clipped-corner",
+                                .key = "detector.size_mm",
+                                .value = number_text(description.detector_width),
+                                .works = "a smaller detector, or lenses with larger semi_diameter_mm",
+                                .sentence = "The cone from the field's corner is clipped by " + lenses + "."});
         }
     }
     // Where one pixel's blur, n e / NA, exceeds the depth of field n lambda / NA^2, the detector, being coarser than
     // the optics, determines the depth of field. Full sampling takes half an Airy radius, which focus variation can do
     // without. Below a tenth of the radius pixels add noise and memory but no detail.
     constexpr double far_finer = 0.1;
+    const ImageSize pixels = description.detector_pixels;
+    const auto pixels_of_pitch = [&](double pitch) {
+        const double times = first_order.pixel_pitch / pitch;
+        return text_of(ImageSize{.columns = std::max(1, static_cast<int>(std::lround(pixels.columns * times))),
+                                 .rows = std::max(1, static_cast<int>(std::lround(pixels.rows * times)))});
+    };
     if (quality.detector_depth_of_field > first_order.depth_of_field) {
         const double wavelength = quality.wavelength_um * mm_per_um;
         warnings.push_back(
-            fmt::format("The detector's pixel, {:.3g} um in the object, is coarser than the optics: above lambda / NA "
-                        "= {:.3g} um it decides the depth of field; sampling all that they resolve takes {:.3g} um.",
-                        first_order.pixel_pitch * um_per_mm, wavelength / first_order.numerical_aperture * um_per_mm,
-                        0.5 * quality.airy_radius * um_per_mm));
+            {.code = "coarse-pixels",
+             .key = "detector.pixels",
+             .value = text_of(pixels),
+             .works = pixels_of_pitch(0.5 * quality.airy_radius),
+             .sentence = fmt::format(
+                 "The detector's pixel, {:.3g} um in the object, is coarser than the optics: above lambda / NA "
+                 "= {:.3g} um it decides the depth of field; sampling all that they resolve takes {:.3g} um.",
+                 first_order.pixel_pitch * um_per_mm, wavelength / first_order.numerical_aperture * um_per_mm,
+                 0.5 * quality.airy_radius * um_per_mm)});
     } else if (first_order.pixel_pitch < far_finer * quality.airy_radius) {
-        warnings.push_back(fmt::format(
-            "The detector's pixel, {:.3g} um in the object, is far finer than the optics resolve, whose Airy "
-            "radius is {:.3g} um: larger pixels would see as much, with less noise.",
-            first_order.pixel_pitch * um_per_mm, quality.airy_radius * um_per_mm));
+        warnings.push_back(
+            {.code = "fine-pixels",
+             .key = "detector.pixels",
+             .value = text_of(pixels),
+             .works = pixels_of_pitch(0.5 * quality.airy_radius),
+             .sentence = fmt::format(
+                 "The detector's pixel, {:.3g} um in the object, is far finer than the optics resolve, whose Airy "
+                 "radius is {:.3g} um: larger pixels would see as much, with less noise.",
+                 first_order.pixel_pitch * um_per_mm, quality.airy_radius * um_per_mm)});
     }
     return warnings;
 }
@@ -378,7 +404,7 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
     }
     quality.axis_clipping = clipping(imaging, setting.on_axis, instrument, setting.stop);
     quality.corner_clipping = clipping(imaging, corner.outline, instrument, setting.stop);
-    quality.warnings = warnings_of(quality, first_order);
+    quality.warnings = warnings_of(quality, description, first_order);
     return quality;
 }
 

@@ -2,6 +2,7 @@
 // data. Lengths in mm and angles in rad, wavelengths in um.
 #pragma once
 
+#include "core/messages/warning.hpp"
 #include "optics/aim/apertures.hpp"
 #include "optics/instrument/instrument.hpp"
 
@@ -89,7 +90,7 @@ struct ImageQuality {
 
     std::vector<Clipping> axis_clipping;
     std::vector<Clipping> corner_clipping;
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
 };
 
 // Measures `instrument`, which assemble() made from `description`.

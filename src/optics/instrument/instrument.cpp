@@ -3,6 +3,7 @@
 #include "core/mathematics/units.hpp"
 #include "optics/aim/detector_aim.hpp"
 #include "optics/instrument/assembly.hpp"
+#include "optics/instrument/obstructed_ring.hpp"
 #include "optics/instrument/unknown_dispersion.hpp"
 
 #include <fmt/format.h>
@@ -296,6 +297,7 @@ Instrument assemble(const InstrumentDescription& description) {
         further.elements = instrument.elements; // light of a ring may reach the illuminator too
         instrument.further_lights.push_back(std::move(further));
     }
+    append(instrument.warnings, warnings_of_obstructed_rings(description, instrument));
     return instrument;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/mathematics/pixel_grid.hpp"
+#include "core/messages/warning.hpp"
 #include "optics/media/spectrum.hpp"
 #include "optics/prescriptions/prescription.hpp"
 #include "optics/train/mesh_element.hpp"
@@ -194,7 +195,7 @@ struct Instrument {
     Pose source_pose;
     std::optional<TurnedInstrument> turned;       // none unless the description asks for it
     std::optional<glm::dvec2> single_scatter_aim; // aim_at_detector(); none unless the description asks for it
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
     std::vector<Instrument> further_lights; // the same instrument in the light of each further source
 
     std::vector<const Instrument*> lights() const; // one for each source, this one first

@@ -35,7 +35,7 @@ std::vector<const Medium*> media_of(const InstrumentDescription& description) {
 
 } // namespace
 
-std::vector<std::string> warning_of_unknown_dispersion(const InstrumentDescription& description) {
+std::vector<Warning> warning_of_unknown_dispersion(const InstrumentDescription& description) {
     std::vector<std::string> names;
     double greatest = negligible;
     double where_um = 0;
@@ -54,11 +54,15 @@ std::vector<std::string> warning_of_unknown_dispersion(const InstrumentDescripti
     if (names.empty()) {
         return {};
     }
-    return {
-        fmt::format("The indices of {} are known at the F, d and C lines alone (0.486 um to 0.656 um); at {:.4g} um "
-                    "they are those that are usual for their Abbe numbers, which 95 in 100 glasses have within {:.1g}. "
-                    "More wavelengths in [media] of a prescription say it better.",
-                    fmt::join(names, ", "), where_um, greatest)};
+    return {{.code = "estimated-dispersion",
+             .key = "media",
+             .value = {},
+             .works = fmt::format("indices at {:.4g} um", where_um),
+             .sentence = fmt::format(
+                 "The indices of {} are known at the F, d and C lines alone (0.486 um to 0.656 um); at {:.4g} um "
+                 "they are those that are usual for their Abbe numbers, which 95 in 100 glasses have within {:.1g}. "
+                 "More wavelengths in [media] of a prescription say it better.",
+                 fmt::join(names, ", "), where_um, greatest)}};
 }
 
 } // namespace vkfv::optics

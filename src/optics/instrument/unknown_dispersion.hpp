@@ -11,6 +11,6 @@ namespace vkfv::optics {
 // Returns a sentence for the user if the light of the description reaches wavelengths at which indices of its glasses
 // are estimated (Medium::dispersion_uncertainty); an empty list otherwise. Throws InputError for a wavelength out of a
 // glass's range.
-std::vector<std::string> warning_of_unknown_dispersion(const InstrumentDescription& description);
+std::vector<Warning> warning_of_unknown_dispersion(const InstrumentDescription& description);
 
 } // namespace vkfv::optics

@@ -1,0 +1,58 @@
+#include "core/messages/warning.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vkfv {
+
+std::vector<std::string> sentences_of(const std::vector<Warning>& warnings) {
+    std::vector<std::string> sentences;
+    sentences.reserve(warnings.size());
+    for (const Warning& warning : warnings) {
+        sentences.push_back(warning.sentence);
+    }
+    return sentences;
+}
+
+std::string remedy_text(const Warning& warning) {
+    if (warning.key.empty()) {
+        return "";
+    }
+    const std::string now = warning.value.empty() ? warning.key : fmt::format("{} = {}", warning.key, warning.value);
+    return warning.works.empty() ? fmt::format("[{}]", now) : fmt::format("[{}; works: {}]", now, warning.works);
+}
+
+void log_warnings(const std::vector<Warning>& warnings) {
+    for (const Warning& warning : warnings) {
+        spdlog::warn("{}", warning.sentence);
+    }
+}
+
+void append(std::vector<Warning>& warnings, const std::vector<Warning>& further) {
+    for (const Warning& warning : further) {
+        if (std::ranges::find(warnings, warning) == warnings.end()) {
+            warnings.push_back(warning);
+        }
+    }
+}
+
+std::string number_text(double value, Rounding rounding) {
+    constexpr int digits = 4;
+    if (value == 0 || !std::isfinite(value)) {
+        return fmt::format("{:g}", value);
+    }
+    const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1 - digits);
+    const double parts = value / unit;
+    // What stands on a digit already is not moved by its own rounding.
+    constexpr double exact = 1e-9;
+    const double whole = std::round(parts);
+    const double rounded = rounding == Rounding::nearest || std::abs(parts - whole) < exact * std::abs(parts) ? whole
+                           : rounding == Rounding::up ? std::ceil(parts)
+                                                      : std::floor(parts);
+    return fmt::format("{:.{}g}", rounded * unit, digits);
+}
+
+} // namespace vkfv

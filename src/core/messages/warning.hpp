@@ -1,0 +1,34 @@
+// What a program warns of, in a form that other programs can act on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vkfv {
+
+struct Warning {
+    std::string code;     // of its kind, the same whatever the numbers are: "coarse-pixels"
+    std::string key;      // of the configuration, dotted: what to change; empty: the configuration has none
+    std::string value;    // that the key has, as TOML has it; empty: it is not given, or no single value
+    std::string works;    // a value of the key that this warning is not given with, or what helps where no number does
+    std::string sentence; // for people, whole: it may say the value and what helps too
+
+    bool operator==(const Warning&) const = default;
+};
+
+std::vector<std::string> sentences_of(const std::vector<Warning>& warnings);
+
+// "[key = value; works: ...]", for the line below a sentence; empty without a key.
+std::string remedy_text(const Warning& warning);
+
+// Each sentence is a message of the log.
+void log_warnings(const std::vector<Warning>& warnings);
+
+// Those of `further` that are not among them already.
+void append(std::vector<Warning>& warnings, const std::vector<Warning>& further);
+
+// A number as a key's value: with so many digits as tell it to a thousandth, rounded up or down so that it still works.
+enum class Rounding { nearest, up, down };
+std::string number_text(double value, Rounding rounding = Rounding::nearest);
+
+} // namespace vkfv

@@ -1,0 +1,28 @@
+// What of a configuration's plan cannot end well, told before any light is traced.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "core/messages/warning.hpp"
+#include "measurement/scene/specimen_view.hpp"
+#include "optics/instrument/instrument.hpp"
+
+#include <vector>
+
+namespace vkfv::measurement {
+
+// Of a stack's scan and evaluation: a scan inside the depth of field, one with coarse steps, one that does not hold the
+// specimen or its curved image; a window as wide as the image; an average along z at its end; images and their
+// evaluation that this machine's memory does not hold. The instrument is that of the configuration, relief what its
+// detector sees. None without [scan].
+std::vector<Warning> plan_warnings(const Configuration& configuration, const optics::Instrument& instrument,
+                                   const Relief& relief);
+
+// What in-focus heights have between them, mm: the depth of field of the optics, n lambda / NA^2, or where it is more
+// that of the pixels, n e / NA with the pitch e in the object.
+double depth_of_focus(const optics::FirstOrder& first_order);
+
+// Bytes of memory that the evaluation of the configuration's stack takes at most, where it is done
+// (StackEvaluator, topography.hpp).
+double evaluation_bytes(const Configuration& configuration, const optics::Instrument& instrument);
+
+} // namespace vkfv::measurement
