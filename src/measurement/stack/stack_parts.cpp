@@ -78,8 +78,8 @@ StackScene::StackScene(const Configuration& its_configuration)
 StackScene::StackScene(const Configuration& its_configuration, std::shared_ptr<const Parts> parts)
     : parts_(std::move(parts)), configuration(its_configuration), positions(configuration.scan->positions()),
       specimen(parts_->specimen), instrument(parts_->instrument),
-      planned(plan_warnings(configuration, instrument,
-                            relief_of(specimen, pixels(), instrument.first_order.pixel_pitch))),
+      planned(
+          plan_warnings(configuration, instrument, relief_of(specimen, pixels(), instrument.first_order.pixel_pitch))),
       warnings(planned) {
     append(warnings, instrument.warnings);
 }
