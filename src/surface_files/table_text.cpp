@@ -26,7 +26,8 @@ std::optional<double> number_of(std::string_view cell, const Style& style) {
 }
 
 // The notation of a line of numbers without its quoted parts. A semicolon or a tab is always the separator, and commas
-// are then decimal ones. With blanks, a comma directly followed by a digit is a decimal comma.
+// are then decimal ones unless the line has points. With blanks, commas are decimal ones if a digit directly follows
+// each of them.
 Style style_outside_quotes(std::string_view line) {
     line = bare(line);
     const bool comma = line.find(',') != std::string_view::npos;

@@ -34,8 +34,8 @@ class GlassCatalog {
     // asset_folders() without a base, read at the first call. Throws InputError if it is missing or wrong.
     static GlassCatalog builtin();
 
-    // A catalogue from a document of that form: [media.NAME] as in prescriptions, but each with a source, and other
-    // names of media under [aliases]. Throws one InputError that reports all problems.
+    // A catalogue from a document like assets/glasses/common.toml: [media.NAME] as in prescriptions, but each with a
+    // source, and other names of media under [aliases]. Throws one InputError that reports all problems.
     static GlassCatalog of(const TomlTable& root);
 
     // Adds the catalogue of an AGF file. Throws InputError.
