@@ -28,8 +28,8 @@ struct BvhWalk {
 
 uvec2 bvh_stack[BVH_STACK];
 
-// root: index of the tree's first node. start: nearest distance of interest, at least 0. margin: mm, by which boxes
-// widen on each side; at least some ten roundings of the largest coordinate of boxes and origin.
+// Begins a walk. root: index of the tree's first node. start: nearest distance of interest, at least 0. margin: mm, by
+// which boxes widen on each side; at least some ten roundings of the largest coordinate of boxes and origin.
 BvhWalk bvh_walk(uint root, real3 origin, real3 direction, real start, real margin) {
     BvhWalk walk;
     walk.origin = origin;

@@ -51,7 +51,8 @@ struct BackwardArrival {
     Light light;
 };
 
-// x, y: position on the detector's plane as in Detection, mm. pupil: a point of the unit disc.
+// Traces from the detector to the specimen's top plane. x, y: position on the detector's plane as in Detection, mm.
+// pupil: a point of the unit disc.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION BackwardArrival look_from_detector(VKFV_SCENE_PARAMETER Instrument instrument,
                                                                      BackwardOptics backward, SpecimenRecord specimen,
                                                                      Exposure exposure, real x, real y, real2 pupil,

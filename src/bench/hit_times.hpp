@@ -23,8 +23,9 @@ struct HitTimes {
     double share_met = 0;       // share of the rays that met the specimen
 };
 
-// options: device, traversal, seed; batch: rays of a run, 0: a number that suits the device. numerical_aperture: sine
-// of the cone's half-angle about -z, below 1; not used for rays that leave. Throws as make_device_tracer().
+// Times the hits of rays in one order. options: device, traversal, seed; batch: rays of a run, 0: a number that suits
+// the device. numerical_aperture: sine of the cone's half-angle about -z, below 1; not used for rays that leave. Throws
+// as make_device_tracer().
 HitTimes time_hits(const specimen::Specimen& specimen, const trace::TraceOptions& options, double numerical_aperture,
                    HitOrder order, int runs);
 

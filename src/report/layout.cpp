@@ -53,7 +53,7 @@ View main_view(const Drawing& drawing) {
     return view;
 }
 
-// window: rectangle outside of which no shape is drawn; the caller clips to it.
+// Draws shapes. window: rectangle outside of which none is drawn; the caller clips to it.
 void draw_shapes(Canvas& canvas, const View& view, const std::vector<Shape>& shapes, const std::optional<Box>& window) {
     canvas.svg.open_group("fill=\"none\"");
     for (const Shape& shape : shapes) {

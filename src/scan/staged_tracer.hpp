@@ -8,8 +8,9 @@
 
 namespace vkfv::scan {
 
-// tracer: of single moments, with its share of the rays. With several moments an exposure is their sum, so that each
-// launches as many rays as the tracer does, and the image is the mean. Checkpoints are saved if there is one moment.
+// Makes a tracer of exposures on a moving stage. tracer: of exposures of a single moment. With several moments an
+// exposure is the sum of theirs, each with as many rays as the tracer launches, and the image is their mean.
+// Checkpoints are saved if there is one moment.
 std::unique_ptr<trace::Tracer> make_staged_tracer(std::unique_ptr<trace::Tracer> tracer, StageMotion motion);
 
 } // namespace vkfv::scan

@@ -27,7 +27,7 @@ struct Comparison {
     std::vector<MeasurementComparison> measurements;
     LateralShift removed_shift;               // mean shift of the measurements, if it was to be removed; otherwise 0
     surface::HeightMap truth;                 // at the measurements' points, on their grid, untreated
-    surface::HeightMap deviation;             // of repeated measurements their mean (repeatability.hpp)
+    surface::HeightMap deviation;             // for repeated measurements their mean (repeatability.hpp)
     std::optional<SystematicAndRandom> parts; // for two measurements or more
     // The following are of the deviation after levelling alone, whatever the band: a filter or form would hide their
     // effects.

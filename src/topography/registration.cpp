@@ -247,7 +247,7 @@ MeasuredTransform measured_transform(const Grid<float>& reference, const Grid<fl
     // Four of the nine parts, of half the side each, do not overlap: they give eight independent shifts, and three
     // values are fitted to these.
     constexpr double independent = 4, free_values = 5;
-    const double variance = residual / weight * independent / free_values; // of a part's shift, either component
+    const double variance = residual / weight * independent / free_values; // for either component of a shift
     return {.transform = transform,
             .shift_deviation = std::sqrt(variance / independent),
             .scale_deviation = spread > 0 ? std::sqrt(variance / independent * weight / spread) : 0};

@@ -24,7 +24,8 @@ struct SystematicAndRandom {
     surface::HeightMap standard_deviation; // mm, of one repetition; NaN at the points that do not count
 };
 
-// deviations: measured minus true, of two or more repetitions on one grid: std::invalid_argument otherwise.
+// Separates both parts. deviations: measured minus true, of two or more repetitions on one grid: std::invalid_argument
+// otherwise.
 SystematicAndRandom systematic_and_random(std::span<const surface::HeightMap> deviations);
 
 } // namespace vkfv::topography

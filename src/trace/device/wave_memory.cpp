@@ -15,7 +15,7 @@ namespace vkfv::trace {
 
 namespace {
 
-constexpr double usable_share = 0.8;   // of a device's memory; the rest is for specimen, kernels and other programs
+constexpr double usable_share = 0.8;   // share of memory; the rest is for specimen, kernels and other programs
 constexpr std::uint64_t padding = 128; // bytes that a buffer is padded by (vulkan/buffer.hpp)
 
 ImageSize in_parts(int parts, ImageSize pixels) {

@@ -34,10 +34,7 @@ class WavePlanes {
     int planes_at_once() const { return static_cast<int>(a_group * at_once_); }
 
     std::size_t plane_bytes() const { return a_group * at_once_ * plane_; } // planes of the groups transformed at once
-    std::size_t spectrum_bytes() const {
-        return filters_ * 2 * plane_;
-    } // half of the spectrum of the image with its
-      // mirror images
+    std::size_t spectrum_bytes() const { return filters_ * 2 * plane_; }    // half of the image's spectrum
     // Planes of the filters' images: two real images are the real and the imaginary part of one.
     int image_planes() const { return static_cast<int>((filters_ + 1) / 2); }
     std::size_t image_bytes() const { return (filters_ + 1) / 2 * 4 * plane_; } // image with its mirror images

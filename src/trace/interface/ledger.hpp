@@ -68,7 +68,7 @@ class Accounts {
     static constexpr std::size_t slot_step = 64;
 
     static std::vector<Surface> surfaces_of(const optics::Instrument& instrument);
-    // crossings: of the illumination, and of both trains in whole.
+    // Adds the slots of all statuses. illumination, both: surfaces of the illumination, and of both trains together.
     void add_slots(const std::vector<Surface>& surfaces, int illumination, int both);
     Ledger ledger(std::span<const std::uint64_t> numbers, std::uint64_t rays) const;
 

@@ -16,7 +16,8 @@ struct PixelLight {
     Grid<double> standard_error; // W
 };
 
-// numbers: as the rule defines them; each randomisation has `stride` numbers, at least the number of pixels.
+// Makes the estimates. numbers: as the rule defines them; each randomisation has `stride` numbers, at least the number
+// of pixels.
 PixelLight estimate_pixels(const estimate::EstimateRule& rule, ImageSize pixels, std::span<const std::uint64_t> numbers,
                            std::size_t stride = 0);
 

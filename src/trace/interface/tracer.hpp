@@ -20,7 +20,7 @@ namespace vkfv::trace {
 
 enum class Traversal { automatic, ray_query, quadtree, bvh };
 
-// forward: from the source, counted on the detector. backward: from the detector, collecting the source's radiance.
+// forward counts light from the source on the detector; backward collects the source's radiance from the detector.
 enum class Estimator { forward, backward };
 
 struct TraceOptions {
