@@ -249,7 +249,8 @@ TEST(DataSheets, ARingByItsElevationStandsAtItsHeight) {
 }
 
 TEST(DataSheets, ALedOfAColourIsABellOfItsPeakAndWidth) {
-    const std::string lenses = "[objective]\nkind = \"ideal\"\nmagnification = 20\nnumerical_aperture = 0.45\n" +
+    const std::string lenses = "[illumination]\nkind = \"ideal\"\ncondenser_focal_length_mm = 26\n"
+                               "[objective]\nkind = \"ideal\"\nmagnification = 20\nnumerical_aperture = 0.45\n" +
                                tube_lens_of(200) + small_chip;
     const auto spectrum = [&](const std::string& lines) {
         return of("[source]\nradius_mm = 1\n[source.spectrum]\n" + lines + lenses).instrument.spectrum;
