@@ -78,7 +78,7 @@ struct PlantedFault {
     const char* code;
     const char* key;
     const char* measurable;    // as the verdict says; null: it does not matter
-    bool works_as_told = true; // whether the warning's value of the key is one that can be tried
+    bool works_as_told = true; // a value; of the device's memory, gloss and texture it is words
 };
 
 std::ostream& operator<<(std::ostream& stream, const PlantedFault& fault) {
@@ -166,8 +166,13 @@ INSTANTIATE_TEST_SUITE_P(
                      "ring-in-objective",
                      "source.elevation_deg",
                      "partly"},
-        PlantedFault{
-            "MemoryThatIsNotThere", &sound_configuration, {"detector.pixels=16384"}, "memory", "detector.pixels", "no"},
+        PlantedFault{"MemoryThatIsNotThere",
+                     &sound_configuration,
+                     {"detector.pixels=16384"},
+                     "memory",
+                     "detector.pixels",
+                     "no",
+                     false},
         PlantedFault{"RayNoiseWithoutACamera",
                      &sound_configuration,
                      {"trace.rays=2e4"},
