@@ -77,9 +77,12 @@ Verdict verdict_on(const Configuration& configuration, const optics::Instrument&
         some = none;
         none = nullptr;
     }
+    // Of a specimen without texture the edges alone are seen, and the sample need not have met one.
+    const bool edges_alone = some != nullptr && some->code == "no-texture";
     const bool in_noise =
-        expected && none == nullptr && some == nullptr && expected->texture_over_noise < least_over_noise;
+        expected && none == nullptr && !edges_alone && expected->texture_over_noise < least_over_noise;
     verdict.measurable = none != nullptr || in_noise                    ? Verdict::Measurable::no
+                         : !expected                                    ? Verdict::Measurable::unknown
                          : some != nullptr                              ? Verdict::Measurable::partly
                          : expected && expected->measurable_share < 0.9 ? Verdict::Measurable::partly
                                                                         : Verdict::Measurable::yes;
@@ -151,10 +154,11 @@ std::string wrapped(std::string_view text, std::size_t indentation) {
 }
 
 std::string verdict_text(const std::string& file, const Verdict& verdict) {
-    const char* const answer = verdict.measurable == Verdict::Measurable::yes      ? "can be measured"
-                               : verdict.measurable == Verdict::Measurable::partly ? "can be measured in part"
-                                                                                   : "cannot be measured";
-    std::string text = fmt::format("{}: valid, {}\n", file, answer);
+    const char* const answer = verdict.measurable == Verdict::Measurable::yes      ? ", can be measured"
+                               : verdict.measurable == Verdict::Measurable::partly ? ", can be measured in part"
+                               : verdict.measurable == Verdict::Measurable::no     ? ", cannot be measured"
+                                                                                   : "";
+    std::string text = fmt::format("{}: valid{}\n", file, answer);
     for (const std::string& sentence : verdict.sentences) {
         text += wrapped(sentence, 2);
     }

@@ -3,33 +3,41 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace vkfv::measurement {
 
 struct Verdict {
-    enum class Measurable { yes, partly, no };
-    Measurable measurable = Measurable::yes;
+    enum class Measurable { yes, partly, no, unknown }; // unknown: there is no specimen or no scan to judge
+    Measurable measurable = Measurable::unknown;
     std::vector<std::string> sentences; // whole, the most important first
 };
 
+inline const std::array<const char*, 4>& names_of_measurable() {
+    static const std::array<const char*, 4> names = {"yes", "partly", "no", "unknown"};
+    return names;
+}
+
 inline const char* name_of(Verdict::Measurable measurable) {
-    return measurable == Verdict::Measurable::yes ? "yes" : measurable == Verdict::Measurable::partly ? "partly" : "no";
+    return names_of_measurable()[static_cast<std::size_t>(measurable)];
 }
 
 inline nlohmann::ordered_json json_of(const Verdict& verdict) {
     return {{"measurable", name_of(verdict.measurable)}, {"sentences", verdict.sentences}};
 }
 
-// Throws nlohmann's exceptions where it is none.
+// The verdict of such an object. Throws nlohmann's exceptions where it is none; a word that is no answer is unknown.
 inline Verdict verdict_of_json(const nlohmann::ordered_json& json) {
     const std::string answer = json.at("measurable");
-    Verdict verdict{.measurable = answer == "yes"      ? Verdict::Measurable::yes
-                                  : answer == "partly" ? Verdict::Measurable::partly
-                                                       : Verdict::Measurable::no,
-                    .sentences = json.at("sentences")};
-    return verdict;
+    const auto& names = names_of_measurable();
+    const auto found = std::ranges::find(names, answer);
+    return {.measurable = found == names.end() ? Verdict::Measurable::unknown
+                                               : static_cast<Verdict::Measurable>(found - names.begin()),
+            .sentences = json.at("sentences")};
 }
 
 } // namespace vkfv::measurement
