@@ -9,7 +9,8 @@
 
 namespace vkfv::optics {
 
-// Typical values, as data sheets state them: of a diode of a given maker they are its own.
+// A colour by which diodes are sold, with a usual peak and width: round numbers that stand for no maker's diode. Where
+// its data sheet is at hand, its own peak and width are the ones to take.
 struct LedColour {
     std::string_view name;
     double peak_um = 0;       // wavelength of the largest flux per wavelength
