@@ -47,7 +47,7 @@ TEST(FirstConfiguration, IsShortAndItsInstrumentIsTheOneAskedFor) {
         EXPECT_NEAR(first.pixel_pitch * um_per_mm, given.camera.pixel_um / given.objective.magnification,
                     0.01 * given.camera.pixel_um / given.objective.magnification);
         if (given.objective.kind != SheetObjective::Kind::prescription) { // glasses are not known at all wavelengths
-            EXPECT_EQ(instrument.warnings, std::vector<std::string>());
+            EXPECT_EQ(sentences_of(instrument.warnings), std::vector<std::string>());
         }
         // Two depths of field and more beyond what the specimen is high, and at least three images within one.
         const auto& scan = configuration.scan.value();
