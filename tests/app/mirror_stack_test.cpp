@@ -99,10 +99,11 @@ TEST(MirrorStack, IsWarnedOfWhereverItsHeightsAreRead) {
 TEST(MirrorStack, AlikeOneThatScattersIsNotWarnedOf) {
     const auto folder = fresh_folder("diffuse_stack");
     write_file(folder / "c.toml", mirror_stack);
-    const auto mirror = run_program({"check", "c.toml"}, folder);
+    const auto mirror = run_program({"check", "c.toml", "--all"}, folder);
     EXPECT_THAT(mirror.standard_output, AllOf(HasSubstr("changes the light's phase alone"),
                                               HasSubstr("wave_scatter_fill"), HasSubstr("wave_texture_um")));
-    const auto diffuse = run_program({"check", "c.toml", "--set", "specimen.material.scatter=lambertian"}, folder);
+    const auto diffuse =
+        run_program({"check", "c.toml", "--all", "--set", "specimen.material.scatter=lambertian"}, folder);
     EXPECT_THAT(diffuse.standard_output, AllOf(HasSubstr("wave_scatter_fill"), Not(HasSubstr("do not hold"))));
     const auto narrow = run_program({"check", "c.toml", "--set", "source.radius_mm=0.4"}, folder);
     EXPECT_THAT(narrow.standard_output, HasSubstr("spread unevenly over the objective's pupil"));

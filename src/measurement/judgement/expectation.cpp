@@ -25,9 +25,9 @@ namespace vkfv::measurement {
 
 namespace {
 
-constexpr int sample_side = 48;                                          // pixels
+constexpr int least_sample_side = 36, most_sample_side = 48;             // pixels
 constexpr std::uint64_t fewest_sample_rays = 32, most_sample_rays = 256; // a pixel
-constexpr std::uint64_t rays_of_sample = 300'000;
+constexpr std::uint64_t rays_of_sample = 100'000;                        // traced twice, in a second on two cores
 constexpr std::uint64_t rays_of_forward_probe = 100'000;
 
 struct Sample {
@@ -49,13 +49,12 @@ Configuration sampled(const Configuration& configuration) {
     Configuration part = configuration;
     auto& instrument = part.instrument;
     const ImageSize whole = instrument.detector_pixels;
+    const int side = std::clamp(3 * configuration.topography.window_px, least_sample_side, most_sample_side);
+    const auto affordable = rays_of_sample / static_cast<std::uint64_t>(side * side);
     const bool backward = configuration.trace.estimator == trace::Estimator::backward;
-    const auto each = std::clamp(backward ? static_cast<std::uint64_t>(std::llround(rays_per_pixel_of(configuration)))
-                                          : (fewest_sample_rays + most_sample_rays) / 4,
-                                 fewest_sample_rays, most_sample_rays);
-    const int window = 3 * configuration.topography.window_px;
-    const int side = std::min(
-        sample_side, std::max(window, static_cast<int>(std::sqrt(static_cast<double>(rays_of_sample / each)))));
+    const auto wanted =
+        backward ? static_cast<std::uint64_t>(std::llround(rays_per_pixel_of(configuration))) : most_sample_rays;
+    const auto each = std::clamp(std::min(wanted, affordable), fewest_sample_rays, most_sample_rays);
     instrument.detector_pixels = {.columns = std::min(whole.columns, side), .rows = std::min(whole.rows, side)};
     instrument.detector_width *= static_cast<double>(instrument.detector_pixels.columns) / whole.columns;
     instrument.turned = true;
