@@ -1,5 +1,6 @@
 #include "measurement/evaluation/existing_stack.hpp"
 
+#include "measurement/evaluation/noise_warnings.hpp"
 #include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/known_truth.hpp"
@@ -14,6 +15,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <random>
 #include <sstream>
@@ -220,13 +222,16 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
         plan_warnings(configuration, instrument, relief_of(specimen, pixels, instrument.first_order.pixel_pitch));
     KnownErrors errors{.flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch),
                        .design = optics::field_curvature(instrument.first_order)};
+    std::vector<Warning> of_phase;
     if (configuration.trace.waves) {
         const PhaseLimits limits = phase_limits(configuration.instrument, instrument, specimen);
         errors.hidden_uncertainty = limits.height_uncertainty();
-        append(warnings, warnings_of(limits));
+        of_phase = warnings_of(limits);
     }
     log_warnings(warnings);
-    append(warnings, instrument.warnings); // which the log has already
+    log_warnings(of_phase);
+    // The log has the instrument's already. The order is that of the run which traced the stack.
+    append(warnings, instrument.warnings);
     const auto order = order_of_images(positions.size(), stack.shuffle);
     StackEvaluation evaluation(
         evaluation_options(configuration, instrument),
@@ -240,7 +245,13 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     auto source = stack_source(configuration, instrument);
     source.ledger = scan::mean_ledger(stack.folder);
     auto origin = run_of(stack.folder);
-    append(warnings, warnings_of_run(stack.folder));
+    std::vector<Warning> of_waves = warnings_of_run(stack.folder), of_camera;
+    std::ranges::copy_if(of_waves, std::back_inserter(of_camera),
+                         [](const Warning& warning) { return !warning.code.ends_with("-waves"); });
+    std::erase_if(of_waves, [](const Warning& warning) { return !warning.code.ends_with("-waves"); });
+    for (const auto& further : {of_waves, of_phase, of_camera}) {
+        append(warnings, further);
+    }
     std::error_code none; // a folder to be made is another
     if (!std::filesystem::equivalent(stack.destination, stack.folder, none)) {
         origin = {{"stack", stack.folder.string()},
@@ -251,8 +262,12 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     if (scan::was_repaired(stack.folder)) {
         origin["repaired"] = true;
     }
-    return {.evaluation = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,
-                                            errors, specimen::feature_of(configuration.specimen->shape)),
+    auto evaluated = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, errors,
+                                       specimen::feature_of(configuration.specimen->shape));
+    const auto of_noise = warnings_of_noise(configuration, evaluated);
+    log_warnings(of_noise);
+    append(warnings, of_noise);
+    return {.evaluation = std::move(evaluated),
             .warnings = std::move(warnings),
             .origin = std::move(origin),
             .source = std::move(source),

@@ -4,6 +4,7 @@
 #include "core/mathematics/units.hpp"
 #include "core/messages/stages.hpp"
 #include "core/threads/background.hpp"
+#include "measurement/evaluation/noise_warnings.hpp"
 #include "measurement/image/camera_images.hpp"
 #include "measurement/image/exposure.hpp"
 #include "measurement/judgement/plan_warnings.hpp"
@@ -23,42 +24,6 @@
 #include <utility>
 
 namespace vkfv::measurement {
-
-namespace {
-
-// Shares: of an image's brightness; of the focus curves' standard deviation.
-constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
-constexpr double most_height_noise = 0.1, good_height_noise = 0.05;
-
-// How noisy the rays left the images, where that is most of what is measured, or coarse beside the focus curves.
-std::vector<Warning> warnings_of_noise(const Configuration& configuration, const Evaluation& evaluation) {
-    const auto of_rays = [&](const char* code, double share, double wanted, const std::string& what) {
-        return std::vector<Warning>{
-            {.code = code,
-             .key = "trace.rays",
-             .value = std::to_string(configuration.trace.rays),
-             .works = rays_for_noise(configuration, share, wanted),
-             .sentence = fmt::format("{} {}", what, remedy_of_noise(configuration, share, wanted))}};
-    };
-    const auto& whole = evaluation.topography.stack;
-    const double width = whole.curve_width_steps * configuration.scan->z_step;
-    const double height_noise = width > 0 ? evaluation.height_noise / width : 0;
-    if (whole.image_noise > most_image_noise) {
-        return of_rays("few-rays", whole.image_noise, good_image_noise,
-                       fmt::format("The images' noise is {:.0f} % of their brightness: what is measured is little or "
-                                   "rough.",
-                                   100 * whole.image_noise));
-    }
-    if (!configuration.camera && height_noise > most_height_noise) { // a camera's own noise is no lack of rays
-        return of_rays("ray-noise-without-camera", height_noise, good_height_noise,
-                       fmt::format("The images' noise is {:.2g} % of their brightness, and scatters the heights by "
-                                   "{:.2g} um, {:.0f} % of their focus curves' width.",
-                                   100 * whole.image_noise, evaluation.height_noise * um_per_mm, 100 * height_noise));
-    }
-    return {};
-}
-
-} // namespace
 
 std::shared_ptr<const StackScene::Parts> StackScene::make_parts(const Configuration& configuration,
                                                                 Surfaces* surfaces) {
