@@ -16,8 +16,8 @@ namespace vkfv::measurement {
 
 namespace {
 
-constexpr int usual_side = 192, largest_side = 256, least_side = 32; // pixels
-constexpr double rays_a_pixel = 64;
+constexpr int usual_side = 128, largest_side = 192, least_side = 32; // pixels
+constexpr double rays_a_pixel = 512; // so many that the camera's noise is three times the rays' under every light
 constexpr double condenser = 26, field_lens = 150;         // mm, of the ideal Köhler illumination
 constexpr double usual_telecentric_distance = 65;          // mm
 constexpr double usual_elevation = 30, barrel_radius = 15; // degrees; mm, of an objective's front
@@ -313,7 +313,7 @@ std::string first_configuration(const DataSheets& given, const std::string& name
         commented("size_mm = " + tidy_number(specimen.extent.size), "more than the field") +
         commented(
             fmt::format("reflectance = {{ kind = \"noise\", pitch_um = {}, correlation_length_um = {} }}",
-                        tidy_number(0.35 * resolution_um, 2), tidy_number(resolution_um, 2)),
+                        tidy_number(0.5 * resolution_um, 2), tidy_number(2 * resolution_um, 2)),
             fmt::format("a printed texture, by which focus is seen; the optics resolve {:.2g} um", resolution_um)) +
         scan_lines(scales, specimen.extent) + "\n[trace]\n" +
         commented("estimator = \"backward\"", "from the pixels to the light: less noise") +

@@ -150,14 +150,15 @@ struct NoiseOfMeasure {
     double kept = 1;  // share of the pixels' variance that the blur leaves
 };
 
+// blurred: noise of the light, which comes before the blur; else noise that comes after it, as a camera's.
 NoiseOfMeasure noise_of(const topography::TopographyOptions& options, const Configuration& configuration,
-                        const optics::Instrument& instrument) {
+                        const optics::Instrument& instrument, bool blurred) {
     constexpr double share = 0.05;
     constexpr ImageSize pixels = ImageSize::square(96);
     const topography::FocusWindow window(options.window_px, options.window_shape);
-    const auto blur = configuration.camera ? std::nullopt : blur_of(configuration, instrument, pixels);
+    const auto blur = blurred ? blur_of(configuration, instrument, pixels) : std::nullopt;
     auto image = noise_image(pixels, share);
-    if (blur) { // a camera's noise comes after it
+    if (blur) {
         image = blur->apply(image);
     }
     double variance = 0;
@@ -399,9 +400,10 @@ Expectation expect(const Configuration& configuration, const optics::Instrument&
         variance_of_sample = mean_where(sample->image.standard_error, sample->in_focus, 2) / (mean * mean);
     }
     double variance = variance_by_rays(configuration, specimen, sample, variance_of_sample, expected);
-    const auto noise = noise_of(options, configuration, instrument);
+    const auto of_light = noise_of(options, configuration, instrument, true);
+    const auto noise = configuration.camera ? noise_of(options, configuration, instrument, false) : of_light;
     // Waves spread each path's light over the Airy pattern, which leaves less noise of it in a pixel.
-    variance *= configuration.camera ? 1 : noise.kept;
+    variance *= of_light.kept;
     expected.ray_noise = std::sqrt(variance);
     if (!sample || !(expected.light_per_pixel > 0)) {
         return expected;
@@ -414,14 +416,14 @@ Expectation expect(const Configuration& configuration, const optics::Instrument&
     const auto blur =
         blur_of(configuration, instrument, {.columns = sample->image.flux.columns, .rows = sample->image.flux.rows});
     const Texture texture =
-        texture_of_image(sample->image, *sample, options, noise, blur, variance_of_sample * noise.kept);
+        texture_of_image(sample->image, *sample, options, of_light, blur, variance_of_sample * of_light.kept);
     expected.texture = std::sqrt(std::max(0.0, texture.energy) / noise.energy);
     expected.texture_error = std::sqrt(texture.error / noise.energy);
     if (!(texture.energy > 0)) {
         return expected;
     }
     const Texture fading =
-        texture_of_image(sample->defocused, *sample, options, noise, blur, variance_of_sample * noise.kept);
+        texture_of_image(sample->defocused, *sample, options, of_light, blur, variance_of_sample * of_light.kept);
     expected.curve_deviation = faded_deviation(expected.curve_deviation, sample->defocus, texture, fading);
     expect_height_noise({.width = expected.curve_deviation / step, .smoothing = options.smoothing_steps.value_or(0)},
                         texture.energy, variance, noise, step, expected);
