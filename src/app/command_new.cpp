@@ -44,7 +44,7 @@ Option length_option(std::string name, std::string description, std::optional<do
     return {.name = std::move(name), .value = "MM", .description = std::move(description), .target = into(length)};
 }
 
-// Of a person at a terminal, what no option says; an empty line takes what is usual.
+// Asks a person at a terminal for each figure that no option gives; an empty line takes the usual one.
 void ask(NewOptions& own) {
     const bool at_terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1;
     for (const Question& question : questions) {

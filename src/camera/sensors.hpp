@@ -6,7 +6,7 @@
 
 namespace vkfv::camera {
 
-// As cameras with the sensor are set by their makers: columns, rows and square pixels.
+// An image sensor with the columns, rows and square pixels that makers of cameras read out.
 struct Sensor {
     std::string_view name;
     int columns = 0;

@@ -326,7 +326,8 @@ void declare_commands(std::vector<Command> commands, std::function<std::string()
 
 namespace {
 
-// What stands behind the last `--color`, or in it; a word that it does not take is told of by the parser.
+// The word given with the last `--color`. Colours are set before the command line is parsed, so that the parser's own
+// messages have them; the parser refuses a word that is none of the choices.
 void colour_log_as_asked(int argument_count, char** argument_values) {
     constexpr std::string_view name = "--color";
     for (int i = 1; i < argument_count; ++i) {

@@ -56,7 +56,7 @@ const std::map<std::string, std::vector<std::string>>& configuration_keys() {
     return keys;
 }
 
-// The same for `explain`: tables too.
+// The keys and tables that `explain` completes.
 std::vector<std::string> key_names() {
     std::vector<std::string> names;
     for (const KeyTable* table : key_tables()) {
@@ -78,7 +78,7 @@ std::vector<std::string> settings() {
     return all;
 }
 
-// Of the options that take a key and its value, in the script's own form.
+// The names of the options that take a key and its value.
 std::vector<std::string> setting_options() {
     std::vector<std::string> names;
     for (const auto& [option, owners] : all_options()) {
@@ -89,7 +89,7 @@ std::vector<std::string> setting_options() {
     return names;
 }
 
-// What a command's operand may be, if no file.
+// The words that a command's operand may be, if it is no file.
 std::vector<std::string> operand_words(const Command& command) {
     if (!command.operands.empty() && command.operands.front().key) {
         return key_names();

@@ -70,7 +70,8 @@ struct Configuration : ReadKeys {
     optics::GlassCatalog glasses; // of the program and of the file's glass_catalogs; none where no instrument is read
     optics::InstrumentDescription instrument; // without the light's field
     std::optional<LightFieldDescription> light_field;
-    // Of an objective with a parfocal length: its shoulder, from which distances count, behind its back vertex, mm.
+    // Distance (mm) from the back vertex of an objective with a parfocal length to its shoulder, from which the
+    // distance to the tube lens counts.
     double shoulder = 0;
     std::optional<camera::CameraOptions> camera; // none: images are light
     std::optional<specimen::Description> specimen;

@@ -201,7 +201,8 @@ std::string sur_bytes(const HeightMap& map, const Provenance& provenance) {
     const int exponent = exponent_of_steps(map);
     std::vector<std::int32_t> points;
     points.reserve(map.height.values.size());
-    // A placeholder until the lowest point is known.
+    // The format marks a gap by a value below all heights, which is known after the last of them: until then by this
+    // one.
     constexpr std::int32_t gap = std::numeric_limits<std::int32_t>::max();
     std::int32_t lowest = 0, highest = 0;
     bool first = true, gaps = false;

@@ -1,5 +1,5 @@
-// What `vkfv check` must find: a table of configurations with one fault each, by the code of its warning, and what the
-// warning says works must work. An objective turned round is in tests/lenses/lens_files_test.py.
+// Faults that `vkfv check` must find: a table of configurations with one fault each, by the code of its warning, and
+// what the warning says works must work. An objective turned round is in tests/lenses/lens_files_test.py.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>

@@ -124,7 +124,7 @@ TEST(DataSheets, TelecentricLensesHaveTheirMagnificationAndAperture) {
     }
 }
 
-// That of a lens that is telecentric on the object's side: the pupil is at infinity.
+// A lens that is telecentric on the object's side has its pupil at infinity.
 TEST(DataSheets, TelecentricLensesSeeEveryPointFromStraightAbove) {
     const auto instrument = assemble_instrument(of(disc_light + text_of(telecentric_lenses[1]) + small_chip));
     EXPECT_NEAR(instrument.constants.gate_position, 0, 1e-12);
@@ -185,7 +185,7 @@ TEST(DataSheets, ACameraHasItsPixelsUnlessOthersAreGiven) {
     EXPECT_EQ(by_format.detector_width, 8.8);
 }
 
-// What is written into stack.toml means the same again.
+// The canonical text in stack.toml gives the same instrument again.
 TEST(DataSheets, CanonicalTextReadsBackToTheSameInstrument) {
     const std::string text =
         "[source]\nkind = \"ring\"\ninner_diameter_mm = 40\nouter_diameter_mm = 60\nworking_distance_mm = 15\n"

@@ -1,5 +1,5 @@
-// What `vkfv new` writes: it is taken back, its instrument is the one asked for, and its scan, texture and window suit
-// it.
+// The text that `vkfv new` writes: it is taken back, its instrument is the one asked for, and its scan, texture and
+// window suit it.
 #include "measurement/beginning/first_configuration.hpp"
 
 #include "configuration/configuration.hpp"

@@ -46,7 +46,7 @@ std::string number_text(double value, Rounding rounding) {
     }
     const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1 - digits);
     const double parts = value / unit;
-    // What stands on a digit already is not moved by its own rounding.
+    // A number that has few enough digits already stays, although its binary form lies a little beside it.
     constexpr double exact = 1e-9;
     const double whole = std::round(parts);
     const double rounded = rounding == Rounding::nearest || std::abs(parts - whole) < exact * std::abs(parts) ? whole

@@ -1,4 +1,4 @@
-// What a program warns of, in a form that other programs can act on.
+// Warnings in a form that other programs can act on.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ std::string remedy_text(const Warning& warning);
 // Each sentence is a message of the log.
 void log_warnings(const std::vector<Warning>& warnings);
 
-// Those of `further` that are not among them already.
+// Appends the warnings of `further` that are not in the list already.
 void append(std::vector<Warning>& warnings, const std::vector<Warning>& further);
 
 // A number as a key's value: with so many digits as tell it to a thousandth, rounded up or down so that it still works.

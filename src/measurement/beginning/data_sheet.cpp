@@ -103,7 +103,7 @@ std::string meant(std::string_view word, const std::vector<std::string>& names) 
     return nearest ? fmt::format("Did you mean {}? ", *nearest) : std::string();
 }
 
-// Of a text without its front ("step:").
+// The length (mm) that is all of a text, as "10um" behind "step:"; none if the text is anything else.
 std::optional<double> only_length(std::string_view text) {
     Words words(text);
     const auto length = words.length();

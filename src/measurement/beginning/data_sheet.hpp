@@ -1,4 +1,5 @@
-// What data sheets say of an instrument, in the short words that `vkfv new` takes: "20x/0.45", "ring:40-60mm@30deg".
+// The figures of an instrument's data sheets, in the short words that `vkfv new` takes: "20x/0.45",
+// "ring:40-60mm@30deg".
 // All parsers throw InputError with the option as its key.
 #pragma once
 

@@ -53,8 +53,8 @@ struct Scales {
     double half_diagonal() const { return 0.5 * pixel * std::hypot(columns, rows); }
 };
 
-// Of a specimen over the field: its lowest and its highest place, the side of the square that it covers, and a height
-// for a first image. mm.
+// The extent of a specimen within the field, mm: its lowest and its highest place, the side of the square that it
+// covers, and a height for a first image.
 struct FieldExtent {
     double lowest = 0;
     double highest = 0;

@@ -123,8 +123,8 @@ class StackEvaluation {
     Evaluation evaluation_;
 };
 
-// What was measured, why the rest was not, and how uncertain it is: the sentences of the summary that judge. All counts
-// as measured from nine tenths of the points on.
+// The sentences of the summary that judge: the share measured, why the rest was not, and how uncertain it is. All
+// counts as measured from nine tenths of the points on.
 Verdict verdict_of(const Evaluation& evaluation);
 
 // The figures as a text of a few lines.

@@ -141,7 +141,7 @@ nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
 }
 
 std::vector<Warning> warnings_of_run(const std::filesystem::path& folder) {
-    // What only whoever had the light could tell; all others are told again.
+    // Warnings that need the traced light are kept; all others are found again by the evaluation.
     constexpr std::array of_images = {"ray-noise-above-camera", "saturated",    "grey-values-end",
                                       "dark-cut-off",           "coarse-waves", "folded-waves"};
     std::error_code none;

@@ -322,7 +322,7 @@ FigureGroup figures_of_expectation(const Configuration& configuration, const Exp
     return group;
 }
 
-// What a first look at an instrument asks for; the rest is for --all.
+// The figures that a first look at an instrument asks for; --all prints the others too.
 bool matters(const Figure& figure) {
     constexpr std::array names = {"working_distance_mm",
                                   "numerical_aperture",

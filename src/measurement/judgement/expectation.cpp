@@ -142,7 +142,7 @@ Grid<float> noise_image(ImageSize pixels, double share) {
     return image;
 }
 
-// What the focus measure makes of noise of variance 1 over the brightness, after the blur: N_1 and g^2.
+// The focus measure of noise of variance 1 over the brightness, after the blur: N_1 and g^2.
 struct NoiseOfMeasure {
     double energy = 0;
     double gain_square = 0;

@@ -1,4 +1,4 @@
-// What a stack's heights can be expected to be like, before any of its images is traced.
+// The noise and uncertainty to expect of a stack's heights, before any of its images is traced.
 //
 // A sample of a few dozen pixels in the middle of the field, at the specimen's median height there, is traced backward
 // in double on the host's cores: no device is opened. It tells the light of a pixel and the texture that focus is seen
@@ -28,7 +28,7 @@
 // grain of the measure's responses; the curved field (p / sqrt(12) of p peak to valley, a uniform distribution); and
 // what images of waves hide (PhaseLimits::height_uncertainty()).
 //
-// It is what a stack of this kind has in the mean; the run itself tells the noise and uncertainty of each of its
+// The expectation is the mean of stacks of this kind; the run itself tells the noise and uncertainty of each of its
 // points.
 #pragma once
 
@@ -64,7 +64,7 @@ struct Expectation {
     double lateral_resolution = unknown;
     double curve_deviation = unknown; // of focus curves
 
-    // Of the points in the field that the specimen covers: shares by slope, from the heights on the pixels.
+    // Shares, by slope, of the points in the field that the specimen covers, from the heights on the pixels.
     static constexpr std::array<double, 5> slope_bounds = {15, 30, 45, 60, 90}; // degrees, the upper ends
     std::array<double, 5> slope_shares{};
     double steepest = unknown; // rad: a facet steeper than that sends less than a hundredth of the most light back
@@ -73,9 +73,10 @@ struct Expectation {
     double image_noise() const; // of both
 };
 
-// Of a configuration with [scan] and [specimen]; hidden_uncertainty: what images of waves hide, mm. What cannot be
-// sampled (light without a given sequence, an instrument whose light cannot be turned round) has no texture, and its
-// noise comes from a few rays traced forward. Takes a second; needs no device. Throws InputError.
+// The expectation for a configuration with [scan] and [specimen]. hidden_uncertainty: of heights by what images of
+// waves hide, mm. An instrument that cannot be sampled (light without a given sequence, or that cannot be turned round)
+// has no texture, and its noise comes from a few rays traced forward. Takes seconds; needs no device. Throws
+// InputError.
 Expectation expect(const Configuration& configuration, const optics::Instrument& instrument,
                    const specimen::Specimen& specimen, double hidden_uncertainty);
 

@@ -15,7 +15,7 @@ namespace vkfv::measurement {
 
 namespace {
 
-// What all of these look at. Lengths in mm.
+// The facts that all warnings of the plan depend on. Lengths in mm.
 struct Plan {
     const Configuration& configuration;
     const optics::FirstOrder& first_order;

@@ -1,4 +1,4 @@
-// What of a configuration's plan cannot end well, told before any light is traced.
+// Warnings about a configuration's plan, before any light is traced.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -10,15 +10,15 @@
 
 namespace vkfv::measurement {
 
-// Of a stack's scan and evaluation: a scan inside the depth of field, one with coarse steps, one that does not hold the
-// specimen or its curved image; a window as wide as the image; an average along z at its end; images and their
-// evaluation that this machine's memory does not hold. The instrument is that of the configuration, relief what its
-// detector sees. None without [scan].
+// The warnings of a stack's scan and evaluation: a scan inside the depth of field, one with coarse steps, one that does
+// not hold the specimen or its curved image; a window as wide as the image; an average along z at its end; images and
+// their evaluation that this machine's memory does not hold. The instrument is that of the configuration, relief what
+// its detector sees. None without [scan].
 std::vector<Warning> plan_warnings(const Configuration& configuration, const optics::Instrument& instrument,
                                    const Relief& relief);
 
-// What in-focus heights have between them, mm: the depth of field of the optics, n lambda / NA^2, or where it is more
-// that of the pixels, n e / NA with the pitch e in the object.
+// The depth of focus, mm: that of the optics, n lambda / NA^2, or that of the pixels, n e / NA with the pitch e in the
+// object, whichever is larger.
 double depth_of_focus(const optics::FirstOrder& first_order);
 
 // Bytes of memory that the evaluation of the configuration's stack takes at most, where it is done

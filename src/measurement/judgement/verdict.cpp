@@ -18,7 +18,7 @@ constexpr std::array leave_none = {"specimen-not-seen", "scan-in-depth-of-field"
 constexpr std::array leave_some = {"scan-misses-specimen", "scan-misses-curved-field", "sparse-field",
                                    "ring-in-objective",    "waves-do-not-hold",        "relief-of-phase",
                                    "coarse-steps"};
-// Of a texture over the noise: below it most points are left out as no better than chance.
+// The least ratio of texture to noise: below it most points are left out as no better than chance.
 constexpr double least_over_noise = 1;
 
 template <std::size_t Count>
@@ -48,7 +48,7 @@ std::string slopes_text(const Expectation& expected) {
     return text;
 }
 
-// What makes most of the uncertainty, or of the noise.
+// Names the largest part of the uncertainty, or of the noise.
 std::string limit_text(const Configuration& configuration, const Expectation& expected) {
     const double noise = expected.height_noise, whole = expected.height_uncertainty;
     if (noise > std::sqrt(0.5) * whole) {
@@ -77,7 +77,7 @@ Verdict verdict_on(const Configuration& configuration, const optics::Instrument&
         some = none;
         none = nullptr;
     }
-    // Of a specimen without texture the edges alone are seen, and the sample need not have met one.
+    // A specimen without texture is seen by its edges alone, and the sample need not have met one.
     const bool edges_alone = some != nullptr && some->code == "no-texture";
     const bool in_noise =
         expected && none == nullptr && !edges_alone && expected->texture_over_noise < least_over_noise;

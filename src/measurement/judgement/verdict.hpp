@@ -13,16 +13,16 @@
 
 namespace vkfv::measurement {
 
-// Of a stack: without [scan] or [specimen] there is no expectation, and the verdict says what is missing. It cannot be
-// measured where a warning says so that leaves no heights, or where no texture stands out of the noise; partly where
-// such a warning takes some of the points.
+// The verdict on a stack. Without [scan] or [specimen] there is no expectation, and the verdict says what is missing. A
+// stack cannot be measured where a warning says so that leaves no heights, or where no texture stands out of the noise;
+// partly where such a warning takes some of the points.
 Verdict verdict_on(const Configuration& configuration, const optics::Instrument& instrument,
                    const std::optional<Expectation>& expected, const std::vector<Warning>& warnings);
 
 // At most 110 columns wide; lines after the first begin with so many spaces.
 std::string wrapped(std::string_view text, std::size_t indentation);
 
-// As a terminal has them: the answer, its sentences, and every warning with its key below it. file: of the
+// The text for a terminal: the answer, its sentences, and every warning with its key below it. file: name of the
 // configuration.
 std::string verdict_text(const std::string& file, const Verdict& verdict);
 std::string warnings_text(const std::vector<Warning>& warnings);

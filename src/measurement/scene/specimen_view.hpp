@@ -31,10 +31,10 @@ std::vector<Warning> warning_of_sparse_field(const specimen::Specimen& specimen,
 std::vector<Warning> warning_of_lost_light(const Configuration& configuration, const optics::Instrument& instrument,
                                            const trace::Image& image);
 
-// Of images in which none of so many rays was detected. Either no light can arrive, which the configuration proves, or
-// the sentence says what share of it may: with p the share of the rays that arrive, none of N does with a probability
-// (1 - p)^N, which is 5 % at the bound (Clopper and Pearson, Biometrika 26, 404 (1934), one-sided). Backward paths
-// carry no shares of the flux, and have no bound. where: a sentence with a space before it, or nothing.
+// The warning of images in which none of so many rays was detected. Either no light can arrive, which the configuration
+// proves, or the sentence says what share of it may: with p the share of the rays that arrive, none of N does with a
+// probability (1 - p)^N, which is 5 % at the bound (Clopper and Pearson, Biometrika 26, 404 (1934), one-sided).
+// Backward paths carry no shares of the flux, and have no bound. where: a sentence with a space before it, or nothing.
 std::vector<Warning> warning_of_no_light(const Configuration& configuration, const optics::Instrument& instrument,
                                          std::uint64_t rays, const std::string& where = {});
 

@@ -54,7 +54,7 @@ class StackScene {
     std::vector<Warning> warnings; // these and the instrument's, which are in the log
 };
 
-// What images are made of their light by: the camera, if there is one. The configuration must outlive it.
+// Converts light to the images that are stored: by the camera, if there is one. The configuration must outlive it.
 scan::ImageDeveloper developer_of(const StackScene& scene, const scan::ImageStore& store,
                                   const WorkingDevices& devices);
 

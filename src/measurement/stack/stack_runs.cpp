@@ -43,7 +43,7 @@ std::string requests_of(const Configuration& configuration) {
                        static_cast<int>(configuration.trace.traversal));
 }
 
-// Of images that a folder lacks, those that the others hold whole. What another device traced stays where it is.
+// Takes the images that the store lacks from folders which hold them whole. Images by another device are not taken.
 void take_images(scan::ImageStore& store, const std::vector<fs::path>& folders) {
     for (const fs::path& folder : folders) {
         for (int image = 0; image < static_cast<int>(store.description().positions.size()); ++image) {
@@ -101,7 +101,7 @@ StackResult StackRuns::trace_and_evaluate(const StackScene& scene, const Working
                                           const StackAmongOthers& others, Progress& progress) {
     const Configuration& configuration = scene.configuration;
     enter_stage("device, kernels");
-    // What fails leaves no tracer behind, since its device may be lost.
+    // A failure leaves no tracer behind, since its device may be lost.
     auto tracer = std::move(light_->tracer);
     if (!tracer) {
         tracer = make_tracer(devices, configuration, scene.instrument, scene.specimen);

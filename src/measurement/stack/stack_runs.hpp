@@ -35,16 +35,16 @@ struct StackAmongOthers {
 
 class StackRuns {
   public:
-    // As measure_stack(). Devices stay open for the next stack, and of a stack with the same light_key() scene and
-    // kernels are used again. The bits are those of measure_stack() by itself. Throws as it does; the same call
-    // continues.
+    // Measures a stack as measure_stack() does. Devices stay open for the next stack, and of a stack with the same
+    // light_key() scene and kernels are used again. The bits are those of measure_stack() by itself. Throws as it does;
+    // the same call continues.
     StackResult measure(const Configuration& configuration, Progress& progress, const StackAmongOthers& others = {});
 
     // The devices of the configuration: those that are open, if it asks for them.
     WorkingDevices& devices_of(const Configuration& configuration);
 
   private:
-    // What depends on the light alone.
+    // The parts of a stack that depend on the light alone.
     struct Light {
         std::string key;
         std::shared_ptr<const StackScene::Parts> parts;

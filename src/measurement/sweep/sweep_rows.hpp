@@ -28,7 +28,8 @@ class SweptStacks {
     SweptStacks(const SweptStacks&) = delete; // it points into its own rows
     SweptStacks& operator=(const SweptStacks&) = delete;
 
-    // What is traced for all of them: "of 30 stacks 1 is traced, 9 are made of the same light, 20 of the same images".
+    // A sentence on what is traced for all stacks: "Of 30 stacks the light of 1 is traced, 9 further are made of the
+    // same light, and 20 of the same images".
     std::string plan() const;
 
     // The stacks of the next combination: how far their heights agree with each other, and their mean figures.

@@ -84,7 +84,7 @@ PupilFilling fill_pupil(const InstrumentDescription& description, const Prescrip
     const double filling_radius =
         std::min(inner_radius, description.illumination_aperture_radius.value_or(inner_radius));
     if (filling_radius < 0.98 * result.pupil_radius_in_source) {
-        // What limits the light is the stop at the source where that is the smaller one.
+        // The stop at the source limits the light if it is the smaller one.
         const bool by_stop = filling_radius < inner_radius;
         const bool rectangle = description.source.rectangle.has_value();
         const auto* const sides = rectangle ? &*description.source.rectangle : nullptr;

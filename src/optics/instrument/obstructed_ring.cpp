@@ -48,7 +48,7 @@ Body body_of(const Instrument& instrument) {
     return body;
 }
 
-// Of the band's rim nearest to the axis.
+// The rim of the luminous band that is nearest to the axis.
 bool meets(const Body& body, const RingLightDescription& ring, double elevation) {
     const double radius = ring.distance * std::cos(elevation) - 0.5 * ring.width * std::sin(elevation);
     const double height = ring.distance * std::sin(elevation) + 0.5 * ring.width * std::cos(elevation);

@@ -13,7 +13,7 @@ constexpr std::array all_colours = {
     LedColour{"white", 0.450, 0},
 };
 
-// Of assets/stacks/white_led.toml.
+// The spectrum of assets/stacks/white_led.toml: a blue die with phosphor.
 const std::vector<double> white_wavelengths_um = {0.40, 0.43, 0.44, 0.45, 0.46, 0.48,
                                                   0.50, 0.53, 0.56, 0.60, 0.65, 0.70};
 const std::vector<double> white_densities = {0.00, 0.20, 0.65, 1.00, 0.50, 0.12, 0.25, 0.55, 0.62, 0.50, 0.20, 0.05};
