@@ -9,14 +9,6 @@
 
 namespace vkfv::measurement {
 
-namespace {
-
-// Shares: of an image's brightness; of the focus curves' standard deviation.
-constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
-constexpr double most_height_noise = 0.1, good_height_noise = 0.05;
-
-} // namespace
-
 std::vector<Warning> warnings_of_noise(const Configuration& configuration, const Evaluation& evaluation) {
     const auto of_rays = [&](const char* code, double share, double wanted, const std::string& what) {
         return std::vector<Warning>{
@@ -29,14 +21,15 @@ std::vector<Warning> warnings_of_noise(const Configuration& configuration, const
     const auto& whole = evaluation.topography.stack;
     const double width = whole.curve_width_steps * configuration.scan->z_step;
     const double height_noise = width > 0 ? evaluation.height_noise / width : 0;
-    if (whole.image_noise > most_image_noise) {
-        return of_rays("few-rays", whole.image_noise, good_image_noise,
+    if (whole.image_noise > noise_limits::most_of_image) {
+        return of_rays("few-rays", whole.image_noise, noise_limits::good_of_image,
                        fmt::format("The images' noise is {:.0f} % of their brightness: what is measured is little or "
                                    "rough.",
                                    100 * whole.image_noise));
     }
-    if (!configuration.camera && height_noise > most_height_noise) { // a camera's own noise is no lack of rays
-        return of_rays("ray-noise-without-camera", height_noise, good_height_noise,
+    if (!configuration.camera &&
+        height_noise > noise_limits::most_of_curve_width) { // a camera's own noise is no lack of rays
+        return of_rays("ray-noise-without-camera", height_noise, noise_limits::good_of_curve_width,
                        fmt::format("The images' noise is {:.2g} % of their brightness, and scatters the heights by "
                                    "{:.2g} um, {:.0f} % of their focus curves' width.",
                                    100 * whole.image_noise, evaluation.height_noise * um_per_mm, 100 * height_noise));

@@ -35,10 +35,16 @@ Exposure expose(const Configuration& configuration, WorkingDevices& devices, con
 // The pixels' mean over the root mean square of their standard errors.
 double signal_to_noise(const trace::Image& image);
 
-// What helps where noise is this share of a pixel's mean light and should be `wanted`, with the configuration's source
-// and estimator; a sentence.
+// Limits of the rays' noise beyond which vkfv warns, before a run and after it, and the noise that its remedies aim at.
+namespace noise_limits {
+inline constexpr double most_of_image = 0.5, good_of_image = 0.1;              // shares of an image's brightness
+inline constexpr double most_of_curve_width = 0.1, good_of_curve_width = 0.05; // shares of the focus curves' deviation
+} // namespace noise_limits
+
+// A sentence that says what helps where noise is this share of a pixel's mean light and should be `wanted`, with the
+// configuration's source and estimator.
 std::string remedy_of_noise(const Configuration& configuration, double share, double wanted);
-// trace.rays for that, as its value.
+// The value of trace.rays that lowers the noise from `share` to `wanted`.
 std::string rays_for_noise(const Configuration& configuration, double share, double wanted);
 // The files of an exposure by their names, beside each other: NAME, float32 W per pixel or a camera's grey values, and
 // without a camera the diffracted image as NAME_diffracted.

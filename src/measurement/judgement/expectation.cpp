@@ -454,9 +454,6 @@ Expectation expect(const Configuration& configuration, const optics::Instrument&
 }
 
 std::vector<Warning> warnings_of(const Configuration& configuration, const Expectation& expected) {
-    // As a run warns of (stack_parts.cpp): shares of an image's brightness, and of the focus curves' deviation.
-    constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
-    constexpr double most_height_noise = 0.1, good_height_noise = 0.05;
     constexpr double most_of_camera = 1.0 / 3;
     constexpr double deviations = 3;
     constexpr double least_texture = 0.01;
@@ -473,14 +470,14 @@ std::vector<Warning> warnings_of(const Configuration& configuration, const Expec
     };
     const double by_rays = expected.ray_noise;
     const double height_share = expected.height_noise / expected.curve_deviation;
-    if (by_rays > most_image_noise) {
+    if (by_rays > noise_limits::most_of_image) {
         const std::string rays_a_pixel = forward
                                              ? fmt::format("{:.2g} rays a pixel are detected", expected.detected_rays)
                                              : fmt::format("{:.3g} rays a pixel are launched", expected.detected_rays);
         const std::string what = fmt::format("The images' noise will be {:.0f} % of their brightness, since {}: more "
                                              "noise than image.",
                                              100 * by_rays, rays_a_pixel);
-        warnings.push_back(noise_warning("few-rays", by_rays, good_image_noise, what));
+        warnings.push_back(noise_warning("few-rays", by_rays, noise_limits::good_of_image, what));
         if (may_turn) {
             warnings.push_back(
                 {.code = "forward-wastes-rays",
@@ -500,9 +497,9 @@ std::vector<Warning> warnings_of(const Configuration& configuration, const Expec
                           fmt::format("The rays' noise will be {:.2g} of the camera's: above a third the "
                                       "images are noisier than the camera's.",
                                       ratio)));
-    } else if (!configuration.camera && height_share > most_height_noise) {
+    } else if (!configuration.camera && height_share > noise_limits::most_of_curve_width) {
         warnings.push_back(noise_warning(
-            "ray-noise-without-camera", height_share, good_height_noise,
+            "ray-noise-without-camera", height_share, noise_limits::good_of_curve_width,
             fmt::format("The images' noise will be {:.2g} % of their brightness and scatter the heights by {:.2g} um, "
                         "{:.0f} % of their focus curves' width. Without [camera] it is the noise of the rays alone, "
                         "which no instrument has.",

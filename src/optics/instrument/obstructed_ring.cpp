@@ -48,7 +48,8 @@ Body body_of(const Instrument& instrument) {
     return body;
 }
 
-// The rim of the luminous band that is nearest to the axis.
+// True if the body stands in the way of the light that goes to the focus from the rim of the luminous band that is
+// nearest to the axis.
 bool meets(const Body& body, const RingLightDescription& ring, double elevation) {
     const double radius = ring.distance * std::cos(elevation) - 0.5 * ring.width * std::sin(elevation);
     const double height = ring.distance * std::sin(elevation) + 0.5 * ring.width * std::cos(elevation);
