@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -83,9 +85,26 @@ TEST_P(Fourier, CosineTransformIsTheSumOfItsDefinition) {
         EXPECT_NEAR(after.values[k], before.values[k], rounding(random)) << k;
 }
 
-// A power of two, one of factors 2, 3 and 5, and a prime; a single row.
+// A power of two, one of factors 2, 3 and 5, and a prime; a single row; lengths with prime factors above 13, which are
+// transformed by a convolution.
 INSTANTIATE_TEST_SUITE_P(Sizes, Fourier,
-                         testing::Values(std::pair{8, 4}, std::pair{6, 15}, std::pair{7, 5}, std::pair{16, 1}));
+                         testing::Values(std::pair{8, 4}, std::pair{6, 15}, std::pair{7, 5}, std::pair{16, 1},
+                                         std::pair{17, 13}, std::pair{38, 23}));
+
+// A long prime takes a few times as long as the convenient length beside it, not as many times as its size.
+TEST(FourierTransform, LongPrimesAreTransformedAsFastAsTheirNeighbours) {
+    const auto seconds = [](int length) {
+        Grid<Complex> grid = noise(length, 8);
+        double least = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < 3; ++k) {
+            const auto began = std::chrono::steady_clock::now();
+            vkfv::fourier_transform(grid);
+            least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+        }
+        return least;
+    };
+    EXPECT_LT(seconds(16381), 40 * seconds(16384));
+}
 
 TEST(ConvenientLength, HasNoFactorAboveFive) {
     EXPECT_EQ(vkfv::convenient_length(1), 1);

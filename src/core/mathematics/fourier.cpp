@@ -1,6 +1,5 @@
 #include "core/mathematics/fourier.hpp"
 
-#include "core/mathematics/line_transform.hpp"
 #include "core/threads/parallel_rows.hpp"
 
 #include <algorithm>
@@ -177,17 +176,6 @@ void cosine_transform(Grid<double>& grid) {
 
 void inverse_cosine_transform(Grid<double>& grid) {
     cosine_grid(grid, true);
-}
-
-int convenient_length(int least) {
-    for (int length = std::max(1, least);; ++length) {
-        int rest = length;
-        for (const int factor : {2, 3, 5})
-            while (rest % factor == 0)
-                rest /= factor;
-        if (rest == 1)
-            return length;
-    }
 }
 
 } // namespace vkfv

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/mathematics/grid.hpp"
+#include "core/mathematics/line_transform.hpp"
 
 #include <complex>
 #include <vector>
@@ -9,7 +10,7 @@
 namespace vkfv {
 
 // Transforms in place: F[l, m] = sum over i, k of f[i, k] exp(-2 pi i (i l / columns + k m / rows)), without a factor.
-// Indices above half the size are negative frequencies. Any size is allowed; convenient_length() is fast.
+// Indices above half the size are negative frequencies. Any size is allowed; convenient_length() is the fastest.
 void fourier_transform(Grid<std::complex<double>>& grid);
 
 // The inverse of fourier_transform(), with the factor 1 / (columns rows).
@@ -28,9 +29,6 @@ void inverse_cosine_transform(Grid<double>& grid);
 // along_y[|k|], with f zero beyond its borders. The weights go from the middle outwards, at most as far as the grid is
 // long. It uses transforms of padded lines, whose time hardly depends on the number of weights.
 void convolve(Grid<std::complex<double>>& grid, const std::vector<double>& along_x, const std::vector<double>& along_y);
-
-// The smallest number >= `least` with no prime factor above 5.
-int convenient_length(int least);
 
 // The frequency of index k in a transform of n values, in cycles per value: k / n, minus 1 from n / 2 on.
 inline double fourier_frequency(int k, int n) {

@@ -1,4 +1,4 @@
-// The discrete Fourier transform of one line, by Eigen's port of KISS FFT.
+// The discrete Fourier transform of one line of any length, by Eigen's port of KISS FFT.
 #pragma once
 
 #include <complex>
@@ -6,8 +6,10 @@
 
 namespace vkfv {
 
-// Transforms of lines. The object keeps the twiddle factors of all lengths used so far and is not thread-safe: each
-// thread needs its own.
+// Transforms of lines. KISS FFT takes length times p operations for a prime factor p of the length; where the largest p
+// exceeds 13, the transform is therefore made as a convolution by transforms of a longer convenient length (L. Bluestein, "A linear filtering
+// approach to the computation of discrete Fourier transform", 1970). The object keeps the twiddle factors of all lengths
+// used so far and is not thread-safe: each thread needs its own.
 class LineTransform {
   public:
     LineTransform();
@@ -24,5 +26,8 @@ class LineTransform {
     struct State;
     std::unique_ptr<State> state_;
 };
+
+// The smallest number >= `least` with no prime factor above 5.
+int convenient_length(int least);
 
 } // namespace vkfv
