@@ -27,7 +27,7 @@ namespace {
                       .remedy = std::move(remedy)});
 }
 
-// Reads a text from its front; what does not fit leaves it as it is.
+// The class reads a text from its front and leaves the text as it is where it does not fit.
 class Words {
   public:
     explicit Words(std::string_view text) : left_(text) {}
@@ -39,7 +39,7 @@ class Words {
         left_.remove_prefix(word.size());
         return true;
     }
-    // Positive and finite.
+    // A positive, finite number.
     std::optional<double> number() {
         double value = 0;
         const auto [end, error] = std::from_chars(left_.data(), left_.data() + left_.size(), value);
@@ -58,7 +58,7 @@ class Words {
         left_.remove_prefix(static_cast<std::size_t>(end - left_.data()));
         return value;
     }
-    // With its unit, in mm.
+    // A length with its unit, converted to mm.
     std::optional<double> length() {
         const auto value = number();
         constexpr std::pair<std::string_view, double> units[] = {{"nm", 1e6}, {"um", 1e3}, {"mm", 1}};
@@ -76,7 +76,7 @@ class Words {
     std::string_view left_;
 };
 
-// "20x/0.45" or "20x_0.45".
+// Reads "20x/0.45" or "20x_0.45"; `between` is the text between the magnification and the aperture.
 bool read_power(Words words, std::string_view between, SheetObjective& objective) {
     const auto magnification = words.number();
     if (!magnification || !words.take("x") || !words.take(between)) {
@@ -103,7 +103,7 @@ std::string meant(std::string_view word, const std::vector<std::string>& names) 
     return nearest ? fmt::format("Did you mean {}? ", *nearest) : std::string();
 }
 
-// The length (mm) that is all of a text, as "10um" behind "step:"; none if the text is anything else.
+// The length (mm) that a text consists of, as "10um" behind "step:". There is no value if the text is anything else.
 std::optional<double> only_length(std::string_view text) {
     Words words(text);
     const auto length = words.length();

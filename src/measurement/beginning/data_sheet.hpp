@@ -1,6 +1,5 @@
-// The figures of an instrument's data sheets, in the short words that `vkfv new` takes: "20x/0.45",
-// "ring:40-60mm@30deg".
-// All parsers throw InputError with the option as its key.
+// Parsers for the figures of an instrument's data sheets, in the short words that `vkfv new` takes, such as "20x/0.45"
+// and "ring:40-60mm@30deg". All parsers throw InputError with the option as its key.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +9,7 @@
 
 namespace vkfv::measurement {
 
-// An ideal lens with a tube lens, one that is telecentric and images by itself, or an objective of the assets.
+// An ideal lens with a tube lens, a telecentric lens that images by itself, or an objective of the assets.
 struct SheetObjective {
     enum class Kind { ideal, telecentric, prescription } kind = Kind::ideal;
     std::string text; // as given
@@ -22,21 +21,21 @@ struct SheetObjective {
 
     double focal_length() const; // mm
 };
-// "20x/0.45", "telecentric:2x/0.1", or a name of `vkfv list objectives`, whose prescriptions are named so: "10x_0.28".
+// Takes "20x/0.45", "telecentric:2x/0.1", or a name that `vkfv list objectives` prints, such as "10x_0.28".
 SheetObjective parse_objective(std::string_view text);
 
 struct SheetCamera {
     std::string text;
-    std::string sensor; // of `vkfv list cameras`; empty: pixels alone
+    std::string sensor; // a name that `vkfv list cameras` prints; empty: pixels alone
     int columns = 0;
     int rows = 0;
     double pixel_um = 0;
 };
-// A sensor's name, "2448x2048@3.45um", or an optical format with pixels: "2/3:2448x2048".
+// Takes a sensor's name, "2448x2048@3.45um", or an optical format with pixels: "2/3:2448x2048".
 SheetCamera parse_camera(std::string_view text);
 
-// Coaxial Köhler illumination, or a flat ring: diameters of its luminous face in mm, and either its height over the
-// focus (mm) or the elevation of its light (degrees).
+// Coaxial Köhler illumination, or a flat ring: diameters of its luminous face in mm, and either the face's height over
+// the focus (mm) or the elevation of its light (degrees).
 struct SheetLight {
     std::string text;
     bool ring = false;
@@ -45,16 +44,16 @@ struct SheetLight {
     std::optional<double> working_distance;
     std::optional<double> elevation;
 };
-// "coaxial", "ring", "ring:40-60mm@30deg" or "ring:40-60mm@15mm".
+// Takes "coaxial", "ring", "ring:40-60mm@30deg" or "ring:40-60mm@15mm".
 SheetLight parse_light(std::string_view text);
 
 struct SheetLed {
     std::string text;
-    std::string colour; // of `vkfv list leds`; empty: by peak and width
+    std::string colour; // a name that `vkfv list leds` prints; empty: given by peak and width
     double peak_um = 0;
     double full_width_um = 0; // 0: white
 };
-// A colour, "460nm" or "460nm/25nm".
+// Takes a colour, "460nm" or "460nm/25nm" (peak and full width).
 SheetLed parse_led(std::string_view text);
 
 struct SheetSpecimen {
@@ -64,8 +63,8 @@ struct SheetSpecimen {
     double length = 0; // mm: radius of the sphere, period of the sinusoid
     std::filesystem::path file;
 };
-// "plane", "step:10um", "sphere:1mm" (its radius), "sinusoid:2um/50um" (height from valley to peak, period), or a
-// measured surface: the path of a file.
+// Takes "plane", "step:10um", "sphere:1mm" (its radius), "sinusoid:2um/50um" (height from valley to peak, period), or
+// the path of a file with a measured surface.
 SheetSpecimen parse_specimen(std::string_view text);
 
 } // namespace vkfv::measurement

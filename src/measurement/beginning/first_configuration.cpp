@@ -17,12 +17,12 @@ namespace vkfv::measurement {
 namespace {
 
 constexpr int usual_side = 128, largest_side = 192, least_side = 32; // pixels
-constexpr double rays_a_pixel = 512; // so many that the camera's noise is three times the rays' under every light
-constexpr double condenser = 26, field_lens = 150;         // mm, of the ideal Köhler illumination
-constexpr double usual_telecentric_distance = 65;          // mm
+constexpr double rays_a_pixel = 512;               // makes the camera's noise three times the rays' under every light
+constexpr double condenser = 26, field_lens = 150; // mm, of the ideal Köhler illumination
+constexpr double usual_telecentric_distance = 65;  // mm
 constexpr double usual_elevation = 30, barrel_radius = 15; // degrees; mm, of an objective's front
 
-// To so many significant digits, as people write them.
+// Rounds to this number of significant digits, as people write lengths.
 double tidy(double value, int digits) {
     if (value == 0) {
         return 0;
@@ -36,12 +36,12 @@ std::string tidy_number(double value, int digits = 3) {
     return shortest_toml(tidy(value, digits));
 }
 
-// A line with its comment at the column where those of its table stand.
+// A line of TOML whose comment stands in the same column as the other comments of its table.
 std::string commented(const std::string& setting, const std::string& comment) {
     return comment.empty() ? setting + "\n" : fmt::format("{:<27} # {}\n", setting, comment);
 }
 
-// Lengths of the object, mm.
+// Lengths in the object plane, mm.
 struct Scales {
     double pixel = 0;
     double resolution = 0; // 0.61 lambda / NA: Rayleigh's criterion
@@ -54,12 +54,12 @@ struct Scales {
 };
 
 // The extent of a specimen within the field, mm: its lowest and its highest place, the side of the square that it
-// covers, and a height for a first image.
+// covers, and a height of the focal plane for a first image.
 struct FieldExtent {
     double lowest = 0;
     double highest = 0;
     double size = 0;
-    double focus = 0; // where much of it is sharp
+    double focus = 0; // much of the specimen is sharp there
 };
 
 Scales scales_of(const DataSheets& sheets, int side) {
@@ -72,7 +72,8 @@ Scales scales_of(const DataSheets& sheets, int side) {
             .rows = std::min(side, sheets.camera.rows)};
 }
 
-// The whole field, and what its edges see out of focus, as far as light goes to waste on more.
+// The side (mm) of the square to cover: the whole field and a rim that its edges see out of focus, unless so wide a rim
+// would waste light.
 double covered(const Scales& scales, double height) {
     const double field = std::max(scales.width(), scales.rows * scales.pixel);
     return std::min(1.5 * field + 4 * height, 1.9 * field);
@@ -110,7 +111,7 @@ FirstSpecimen first_sphere(const DataSheets& sheets) {
                            scales_of(sheets, static_cast<int>(std::clamp<double>(wanted, usual_side, largest_side))),
                        .extent = {},
                        .lines = {}};
-    // The cap holds the field's corners, and no more than stands on a slope of 50 degrees.
+    // The cap reaches the corners of the field, but not beyond a slope of 50 degrees.
     constexpr double beyond = 1.1, steepest = 0.77;
     const double reach = std::min(beyond * made.scales.half_diagonal(), steepest * radius);
     const double height = tidy(radius - std::sqrt(radius * radius - reach * reach), 2);
@@ -140,7 +141,7 @@ FirstSpecimen measured_surface(const DataSheets& sheets) {
              .remedy = "Choose an objective of a larger magnification, or a larger surface."});
     }
     made.extent = extent_of_surface(map, std::min(side, covered(made.scales, 0)));
-    made.extent.size = std::min(tidy(made.extent.size, 3), tidy(0.99 * side, 3)); // within the file, rounded or not
+    made.extent.size = std::min(tidy(made.extent.size, 3), tidy(0.99 * side, 3)); // within the file after rounding
     made.lines =
         commented("kind = \"surface\"", "measured; its least-squares plane is removed") +
         commented("file = " + toml_quoted(std::filesystem::absolute(sheets.specimen.file).lexically_normal().string()),
@@ -188,7 +189,7 @@ std::string source_lines(const DataSheets& sheets, const Scales& scales) {
             text += commented("working_distance_mm = " + tidy_number(*light.working_distance, 6),
                               "of the face over the focus");
         } else {
-            // Past the objective's front.
+            // The light passes the front of the objective.
             const double highest = std::atan2(0.9 * objective.working_distance.value_or(barrel_radius), barrel_radius);
             const double elevation = std::min(usual_elevation, std::floor(highest / radians_per_degree));
             text += commented("elevation_deg = " + tidy_number(light.elevation.value_or(elevation), 6),
@@ -244,7 +245,7 @@ std::string objective_lines(const SheetObjective& objective) {
                              commented("focal_length_mm = " + tidy_number(objective.tube_length, 6), "");
 }
 
-// Whether vkfv knows the noise of a camera with this sensor.
+// Tells whether vkfv has a noise preset for a camera with this sensor.
 bool has_preset(const std::string& sensor) {
     for (const Key* key : camera_keys().keys) {
         if (key->name == "preset") {
@@ -321,7 +322,7 @@ std::string first_configuration(const DataSheets& given, const std::string& name
         "\n[topography]\n" +
         commented(fmt::format("window_px = {}", window),
                   fmt::format("{:.2g} um, five times what the optics resolve", window * scales.pixel * um_per_mm));
-    (void)read_configuration(TomlTable::parse(text, name)); // what does not fit together is told of now
+    (void)read_configuration(TomlTable::parse(text, name)); // throws for parts that do not fit together
     return text;
 }
 

@@ -1,4 +1,4 @@
-// A configuration to begin with, from what data sheets say: short, with comments, and small enough for a first image in
+// A configuration to begin with, made from data sheets: short, with comments, and small enough for a first image in
 // seconds. Positions, texture, window and rays follow from the optics.
 #pragma once
 
@@ -16,8 +16,9 @@ struct DataSheets {
     SheetSpecimen specimen;
 };
 
-// TOML, which read_configuration() takes. `name`: of the file that it will be, for the commands in its comments.
-// Throws InputError for parts that do not fit together, and for a measured surface that cannot be read.
+// Returns TOML that read_configuration() takes. `name` is the name of the file that it will be; the commands in its
+// comments use it. Throws InputError for parts that do not fit together, and for a measured surface that cannot be
+// read.
 std::string first_configuration(const DataSheets& sheets, const std::string& name);
 
 } // namespace vkfv::measurement

@@ -24,7 +24,7 @@ namespace vkfv::measurement {
 
 namespace {
 
-// Adds the time of its life.
+// The time of the object's life is added to the seconds when it ends.
 class Stopwatch {
   public:
     explicit Stopwatch(double& seconds) : seconds_(seconds) {}
@@ -37,7 +37,7 @@ class Stopwatch {
     std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 
-// Of the finite values; NaN without any.
+// The median of the finite values; NaN without any.
 double median_of(const Grid<double>& grid) {
     std::vector<double> values;
     std::ranges::copy_if(grid.values, std::back_inserter(values), [](double value) { return std::isfinite(value); });
@@ -50,7 +50,7 @@ double median_of(const Grid<double>& grid) {
 }
 
 std::string text_of(const char* treatment, const topography::Deviation& deviation) {
-    // A flat has no ratio.
+    // A flat true surface has no ratio.
     const std::string ratio =
         deviation.sq_true > 0 ? fmt::format(" (ratio {:.3f})", deviation.sq_measured / deviation.sq_true) : "";
     return fmt::format("{:<30} Sq measured {:.4f} um, true {:.4f} um{}, RMS deviation {:.4f} um, correlation {:.4f}\n",
@@ -84,7 +84,7 @@ struct Reason {
     std::string sentence;
 };
 
-// What kept points out, with what helps, for each reason that holds for at least a twentieth of them.
+// A sentence for each reason that kept at least a twentieth of the points out, with a remedy.
 std::vector<std::string> reasons_of(const Evaluation& evaluation) {
     using topography::PointState;
     const auto& options = evaluation.options;
@@ -125,7 +125,8 @@ std::string measured_text(double share) {
     return fmt::format("measured {:.1f} % of the points", 100 * share);
 }
 
-// Empty where chance is no more than was asked.
+// The text is empty unless chance lets through more than twice the share that was asked for. A rate of 1 is one that no
+// random order has told.
 std::string chance_text(const Evaluation& evaluation) {
     const double rate = evaluation.topography.stack.limit.rate;
     return rate < 1 && rate > 2 * evaluation.options.false_peak_rate
@@ -134,7 +135,8 @@ std::string chance_text(const Evaluation& evaluation) {
                : std::string();
 }
 
-// Enough to see how curves differ over the field; values of long stacks are thinned out, 32 MB at most.
+// The grid is fine enough to show how curves differ over the field. Values of long stacks are thinned out, so that
+// curves take 32 MB at most.
 topography::CurveGrid curve_grid(int images) {
     constexpr int a_side = 64, most_values = 2048;
     return images > 0 ? topography::CurveGrid{.columns = a_side,
@@ -162,10 +164,10 @@ topography::FocusPlanesMaker focus_planes_for_files(EvaluateOn evaluate_on, cons
     if (evaluate_on == EvaluateOn::device) {
         return topography::device_focus_planes(std::make_shared<const vulkan::Device>(device));
     }
-    // Opened once, for images with and without diffraction.
+    // The device is opened once, for images with and without diffraction.
     return [device, images, opened = std::make_shared<std::shared_ptr<const vulkan::Device>>()](
                const topography::FocusPlanesPlan& stack) {
-        constexpr std::size_t worth_a_device = 30'000'000; // whose opening takes half a second
+        constexpr std::size_t worth_a_device = 30'000'000; // values: opening a device takes half a second
         const auto pixels = static_cast<std::size_t>(stack.plan.columns) * static_cast<std::size_t>(stack.plan.rows);
         const auto without = [](const std::exception& reason) {
             spdlog::debug("evaluated on the host, to the same bits: {}", reason.what());
@@ -179,7 +181,7 @@ topography::FocusPlanesMaker focus_planes_for_files(EvaluateOn evaluate_on, cons
             }
         } catch (const DeviceError& none) {
             without(none);
-        } catch (const RunError& failed) { // too little memory, for one
+        } catch (const RunError& failed) { // as with too little memory
             without(failed);
         }
         return topography::make_host_focus_planes(stack);
@@ -191,7 +193,7 @@ std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixe
     if (file.empty()) {
         return std::nullopt;
     }
-    constexpr double tolerance = 1e-3; // of a pitch: files round theirs
+    constexpr double tolerance = 1e-3; // share of a pitch; files round theirs
     auto flat = surface::read_surface(file).map;
     if (flat.columns() != pixels.columns || flat.rows() != pixels.rows ||
         std::abs(flat.pitch_x - pitch) > tolerance * pitch || std::abs(flat.pitch_y - pitch) > tolerance * pitch) {
@@ -202,7 +204,7 @@ std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixe
                                       pitch * um_per_mm),
                           "Measure the flat with the same instrument."});
     }
-    // A polynomial knows nothing of places where nothing was measured.
+    // The polynomial is unknown where the flat was not measured.
     constexpr double least_share = 0.9;
     const double measured = surface::height_parameters(flat).measured_share;
     if (!(measured >= least_share)) {
@@ -227,7 +229,7 @@ StackEvaluation::StackEvaluation(const topography::TopographyOptions& options, t
     }
     if (diffraction_) {
         diffracted_ = std::make_unique<StackEvaluation>(options, std::move(make_planes), std::nullopt, images);
-        diffracted_->frames_.reset(); // the same images
+        diffracted_->frames_.reset(); // the report's images are those without diffraction
     }
 }
 
@@ -362,7 +364,7 @@ std::string summary(const Evaluation& evaluation) {
                         evaluation.flatness->polynomial_peak_to_valley * um_per_mm,
                         evaluation.flatness->deviation * um_per_mm, evaluation.flatness->s_filter * um_per_mm);
     }
-    constexpr double worth_a_flat = 0.5; // of the uncertainty: less is lost in it
+    constexpr double worth_a_flat = 0.5; // share of the uncertainty; a smaller curvature does not matter
     if (evaluation.field_curvature && *evaluation.field_curvature > worth_a_flat * evaluation.height_uncertainty) {
         text +=
             fmt::format("the field is curved by {:.3g} um peak to valley, by the instrument's design: the heights hold "

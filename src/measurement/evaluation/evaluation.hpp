@@ -1,4 +1,4 @@
-// From the images of a stack to topography and deviation from truth.
+// The evaluation of a stack's images: topography and its deviation from truth.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -22,7 +22,7 @@ class Device;
 
 namespace vkfv::measurement {
 
-// A flat that the same instrument measured (topography/flatness.hpp).
+// A surface known to be flat, as the same instrument measured it (topography/flatness.hpp).
 struct Flat {
     std::filesystem::path file;
     surface::HeightMap heights;
@@ -30,85 +30,86 @@ struct Flat {
     double s_filter = 0;  // mm, nesting index of the S-filter before it
 };
 
-// The flat that the configuration names, for stacks of this grid (pitch in mm); none if it names none. Throws
-// InputError where its grid is another, since it must have been measured by the same instrument, or where too little of
-// it was measured. The S-filter is that of topography.s_filter_um; where that is none, as long as the focus window is
-// wide, since shorter waves of heights are no instrument's form.
+// The flat that the configuration names, for stacks of this grid (pitch in mm); there is none if it names none. Throws
+// InputError where the flat has another grid, since it must have been measured by the same instrument, or where too
+// little of it was measured. The S-filter is topography.s_filter_um; without one its nesting index is the width of the
+// focus window, since shorter waves of heights are no instrument's form.
 std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixels, double pitch);
 
 // Errors of the instrument's heights that are known before any image is evaluated.
 struct KnownErrors {
-    // How its field is curved: a flat takes it off; what the design tells counts as uncertainty where there is no flat
-    // (topography/flatness.hpp). Neither: nothing is known.
+    // The curvature of the field: a flat corrects it; without a flat, the curvature of the optical design counts as
+    // uncertainty (topography/flatness.hpp). With neither, the curvature is unknown.
     std::optional<Flat> flat;
     std::optional<optics::FieldCurvature> design;
-    // Standard uncertainty of every height beside what the images tell, mm: PhaseLimits::height_uncertainty().
-    // Dimensions then have no standard error, as the scatter of the heights tells nothing of it.
+    // Standard uncertainty (mm) of every height beside what the images tell: PhaseLimits::height_uncertainty().
+    // Dimensions then have no standard error, since the scatter of the heights does not show this uncertainty.
     double hidden_uncertainty = 0;
 };
 
-// What a flatness correction found and removed.
+// The deviation that a flatness correction found and removed.
 struct Flatness {
     std::filesystem::path file;
     double deviation = 0;                 // mm, z_FLT of the flat
     double s_filter = 0;                  // mm, nesting index of its S-filter
-    double polynomial_peak_to_valley = 0; // mm, of what was removed
+    double polynomial_peak_to_valley = 0; // mm, of the polynomial that was removed
 };
 
-// Of an expanded uncertainty: a normal error is beyond it in 3 points of 1000 (JCGM 100:2008, 6.3).
+// The factor of an expanded uncertainty: a normal error exceeds it in 3 points of 1000 (JCGM 100:2008, 6.3).
 inline constexpr double coverage_factor = 3;
 
-// As the comparison treats them, levelled but not filtered.
+// The surfaces of the comparison with the truth, levelled but not filtered.
 struct LevelledMaps {
-    topography::LevelledPair pair;           // without a truth, that of the pair is empty
-    std::optional<surface::HeightMap> truth; // also where nothing was measured
+    topography::LevelledPair pair;           // the true part is empty without a truth
+    std::optional<surface::HeightMap> truth; // has heights also where nothing was measured
     std::optional<surface::HeightMap> deviation;
 };
 
 struct Evaluation {
-    topography::TopographyOptions options; // that the heights were found by
+    topography::TopographyOptions options; // settled options that the heights were found by
     topography::Topography topography;
     double height_noise = 0;                 // mm, median of the measured points'; NaN without any
-    double height_uncertainty = 0;           // likewise
-    std::optional<Flatness> flatness;        // of `diffracted` too, by the same flat; none: no correction
+    double height_uncertainty = 0;           // mm, median of the measured points'; NaN without any
+    std::optional<Flatness> flatness;        // also corrects `diffracted`; none: no correction
     std::optional<double> field_curvature;   // mm peak-to-valley over the measured points, by design, not corrected
-    std::optional<surface::HeightMap> truth; // none of a stack that another instrument took; nor deviations
-    std::optional<optics::MappingDeviation> mapping; // with a truth, which it belongs to
+    std::optional<surface::HeightMap> truth; // none, and no deviations, for another instrument's stack
+    std::optional<optics::MappingDeviation> mapping; // of the pixels that the truth belongs to
     LevelledMaps levelled;
-    std::optional<topography::Deviation> deviation; // levelled
-    std::optional<double> beyond_uncertainty;       // share of the points levelled beyond coverage_factor times theirs
+    std::optional<topography::Deviation> deviation; // of the levelled surfaces
+    std::optional<double> beyond_uncertainty;       // share of the levelled points beyond coverage_factor times their u
     std::optional<topography::ComparedPair> filtered; // levelled and filtered; none if the band has no limit
-    topography::Band band;                            // its form holds for the levelled one too
-    std::vector<StandardDimension> dimensions;        // of a standard; none of other specimens
-    report::Frames frames;                            // the images, made small; not of `diffracted`
+    topography::Band band;                            // its form also holds for the levelled surfaces
+    std::vector<StandardDimension> dimensions;        // none if the specimen is no standard
+    report::Frames frames;                            // small pictures of the images; not of `diffracted`
     double seconds = 0;                               // wall clock
-    std::shared_ptr<Evaluation> diffracted; // the same of the images after diffraction; none without [diffraction]
+    std::shared_ptr<Evaluation> diffracted;           // the evaluation after diffraction; none without [diffraction]
 };
 
-// Where a stack is evaluated by this choice of [topography] evaluate_on: "auto" means the device that traces it (none:
-// the host) if it has cores of its own; on the host's own cores the host's code takes a third of lavapipe's time at
-// 1000 x 1000 pixels. Throws DeviceError.
+// Chooses where a stack is evaluated while it is traced. EvaluateOn::automatic means the tracing device if it has cores
+// of its own, otherwise the host: on the host's own cores the host's code takes a third of lavapipe's time at 1000 x
+// 1000 pixels. `traces` is null if the host traces. Throws DeviceError.
 topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, std::shared_ptr<const vulkan::Device> traces);
-// Of so many images that are in files. selector: of the device that would trace, or "host". "auto" means that device if
-// it is here, has cores of its own and the stack is worth opening it; else the host.
+// Chooses where a stack of this many image files is evaluated. selector: the device that would trace, or "host".
+// EvaluateOn::automatic means that device if it is here, has cores of its own and the stack is worth opening it,
+// otherwise the host.
 topography::FocusPlanesMaker focus_planes_for_files(EvaluateOn evaluate_on, const std::string& device_selector,
                                                     std::size_t images);
 
-// Takes a stack's images in their order, as they come, and keeps the time that this takes.
+// Takes a stack's images in their order as they come, and measures the time that this takes.
 class StackEvaluation {
   public:
-    // make_planes: where the work is done. With diffraction the images are evaluated twice, without and with it; they
-    // have its size and one channel then. images: how many will come, of which the report's frames and focus curves are
-    // kept; 0: none are.
+    // make_planes: chooses where the work is done. With diffraction the images are evaluated twice, without and with
+    // it; they must then have its size and one channel. images: the number of images that will come, from which the
+    // report's frames and focus curves are kept; 0 keeps none.
     StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes,
                     std::optional<optics::Diffraction> diffraction, int images);
 
-    // As StackEvaluator::add().
+    // See StackEvaluator::add().
     void add(topography::Channels image, double z, std::optional<double> reading = {});
-    // On the truth's grid, with the deviation from it. Feature: what is measured on the specimen.
+    // Heights on the truth's grid, with the deviation from the truth. feature: the dimensions to find on the specimen.
     Evaluation finish(KnownTruth known, const topography::Band& band, const KnownErrors& errors = {},
                       const std::optional<dimensions::Feature>& feature = {});
-    // Without a truth; the grid's middle is the origin, pitch in mm.
+    // Heights without a truth. The middle of the grid is the origin; pitch in mm.
     Evaluation finish(double pitch, const surface::Form& form, const KnownErrors& errors = {});
 
   private:
@@ -123,8 +124,8 @@ class StackEvaluation {
     Evaluation evaluation_;
 };
 
-// The sentences of the summary that judge: the share measured, why the rest was not, and how uncertain it is. All
-// counts as measured from nine tenths of the points on.
+// The sentences of the summary that judge: the share of points measured, why the others were not, and how uncertain the
+// heights are. From nine tenths of the points on, the verdict is that the surface was measured.
 Verdict verdict_of(const Evaluation& evaluation);
 
 // The figures as a text of a few lines.

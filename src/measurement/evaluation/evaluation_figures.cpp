@@ -14,7 +14,7 @@ std::vector<report::ParameterRow> parameters_of(const surface::HeightMap& map) {
     return report::parameter_rows(surface::areal_parameters(map));
 }
 
-// pair: the measured and the true heights in this band, if there is a truth.
+// pair: the measured and the true heights in this band; the true ones only if there is a truth.
 Figures figures_in(const topography::Band& band, const Evaluation& evaluation, const topography::LevelledPair& pair,
                    const std::optional<topography::Deviation>& deviation) {
     const auto& measured = evaluation.topography.height;

@@ -1,4 +1,4 @@
-// The figures of an evaluation.
+// The figures of an evaluation: deviation and ISO 25178-2 parameters, by the treatment of the surface.
 #pragma once
 
 #include "measurement/evaluation/evaluation.hpp"
@@ -12,17 +12,17 @@
 namespace vkfv::measurement {
 
 struct Figures {
-    topography::Band band; // what was done to the measured heights and to the truth
+    topography::Band band; // treatment of the measured heights and of the truth
     double measured_share = 0;
     std::optional<topography::Deviation> deviation; // none without a truth
     std::vector<report::ParameterRow> measured;     // ISO 25178-2; empty if nothing was measured
-    std::vector<report::ParameterRow> truth;        // the same, of the same points; empty without a truth
+    std::vector<report::ParameterRow> truth;        // of the true heights at the same points; empty without a truth
 };
 
-// Levelled, and then, if the evaluation's band has a limit, filtered as well.
+// The figures of the levelled surface and, if the evaluation's band has a limit, of the filtered one behind it.
 std::vector<Figures> figures_of(const Evaluation& evaluation);
 
-// NaN (nothing measured, undefined) becomes null in JSON.
+// NaN (nothing measured, undefined) becomes null.
 nlohmann::ordered_json json_of(const Figures& figures);
 
 } // namespace vkfv::measurement

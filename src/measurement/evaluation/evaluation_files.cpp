@@ -14,8 +14,8 @@ namespace vkfv::measurement {
 
 namespace {
 
-// What times are told of: not among the results, since no two runs take the same. A script, which alone a page that was
-// opened from a disk may load.
+// Writes the times apart from the results, since no two runs take the same time. They are a script because a page that
+// was opened from a disk may load no other kind of file.
 void write_timings_script(const std::filesystem::path& folder) {
     const nlohmann::json text = read_file(folder / "timings.csv");
     write_file(folder / "timings.js", "vkfv.timings.show(" + text.dump() + ");\n");

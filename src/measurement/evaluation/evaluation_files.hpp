@@ -1,4 +1,4 @@
-// An evaluated stack as files.
+// The files of an evaluated stack.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -16,30 +16,30 @@
 
 namespace vkfv::measurement {
 
-// What the report shows of a stack beside its evaluation.
+// The parts of the report that do not come from the evaluation.
 struct StackSource {
     std::string layout;        // the instrument as SVG; empty: not known
     std::string configuration; // TOML; empty: none
-    scan::MeanLedger ledger{}; // of the images' light; empty: not known
+    scan::MeanLedger ledger{}; // light of the images; empty: not known
 };
 
-// Of a stack of vkfv's own.
+// The source of a stack that vkfv traced.
 StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument);
 
-// An evaluated stack with what its results say beside the evaluation.
+// An evaluated stack with everything that its files contain.
 struct EvaluatedStack {
     Evaluation evaluation;
-    std::vector<Warning> warnings{};                                  // that the log has too
-    nlohmann::ordered_json origin = nlohmann::ordered_json::object(); // of the images, for results.json
+    std::vector<Warning> warnings{};                                  // also in the log
+    nlohmann::ordered_json origin = nlohmann::ordered_json::object(); // where the images come from
     StackSource source;
     TopographyFiles files;
 };
 
-// Writes into the folder, checksums last, the first row of each with the highest y: the topography's files, quality.tif
-// (contrast), fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also
-// truth.tif and deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json; curves.npy
-// (focus curves on a grid, float32, rows x columns x heights); and report.html, all of it on a page, which finds the
-// times in timings.js. What diffraction changes stands in a folder `diffracted` in it.
+// Writes into the folder, checksums last: the topography's files, quality.tif (contrast), fit_residual.tif, mask.tif
+// (uint16: topography::PointState), all_in_focus.tif; with a truth also truth.tif and deviation.tif (float32 um);
+// topography.svg, a picture of the levelled surfaces; results.json; curves.npy (focus curves on a grid, float32, rows x
+// columns x heights); and report.html, a page with all of it, which finds the times in timings.js. The first row of
+// every map has the highest y. The files of the evaluation after diffraction stand in the subfolder `diffracted`.
 void write_results(ResultFolder& folder, const EvaluatedStack& stack);
 
 } // namespace vkfv::measurement

@@ -39,7 +39,7 @@ std::string picture_of(const std::filesystem::path& folder, const Evaluation& ev
     return report::topography_picture(picture);
 }
 
-// Other values at the places of a map.
+// A map of other values at the same places.
 surface::HeightMap with_values(surface::HeightMap map, Grid<double> values) {
     map.height = std::move(values);
     return map;
@@ -66,7 +66,7 @@ std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation, const
     return channels;
 }
 
-// The first row has the highest y.
+// The bytes of curves.npy. Its first row has the highest y.
 std::string curves_bytes(const topography::FocusCurves& curves) {
     const std::size_t row_values = curves.columns.size() * curves.z.size();
     std::vector<float> values;
@@ -114,7 +114,8 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
         deviation = evaluation.filtered ? &evaluation.filtered->difference : &evaluation.levelled.deviation.value();
         write("deviation.tif", [&] { return surface::height_map_bytes(*deviation); });
     }
-    // The format that laboratories exchange has all heights. What is no height, X3P cannot hold: it is in GWY.
+    // X3P is the format that laboratories exchange, so all heights are written in it. It can only hold heights; GWY has
+    // the other maps.
     if (deviation != nullptr && std::ranges::find(files.names, "topography.x3p") != files.names.end()) {
         const auto write_surface = [&](const std::string& name, const surface::HeightMap& map, const char* what) {
             surface::Provenance provenance = files.provenance;

@@ -25,8 +25,8 @@ namespace vkfv::measurement {
 
 namespace {
 
-// The images' numbers, in their order or in a random one: Fisher and Yates's shuffle, by the bits of the
-// generator alone, so that a seed means the same order everywhere.
+// The images' numbers in their order, or in a random order by Fisher and Yates's shuffle. The shuffle uses the
+// generator's bits alone, so that a seed means the same order with every standard library.
 std::vector<int> order_of_images(std::size_t count, const Shuffle& shuffle) {
     std::vector<int> order(count);
     std::iota(order.begin(), order.end(), 0);
@@ -39,7 +39,7 @@ std::vector<int> order_of_images(std::size_t count, const Shuffle& shuffle) {
     return order;
 }
 
-// The first line of what the images depend on that overrides change: "key = value", as it is then.
+// The first line of the identity that the overrides change, as "key = value" with the new value.
 std::optional<std::string> changed_line(const Configuration& configuration, const Configuration& overridden) {
     if (configuration.identity == overridden.identity) {
         return std::nullopt;
@@ -51,7 +51,7 @@ std::optional<std::string> changed_line(const Configuration& configuration, cons
     return other;
 }
 
-// The stack's configuration with overrides that leave its images as they are.
+// The configuration of a stack with its overrides, which must leave the images as they are.
 Configuration configuration_of(const OwnStack& stack) {
     const auto file = stack.folder / "stack.toml";
     auto configuration = load_configuration(file, stack.overrides, Needs::stack);
@@ -66,8 +66,8 @@ Configuration configuration_of(const OwnStack& stack) {
     return configuration;
 }
 
-// All work that follows is sized by stack.toml, so the images must be those that it claims: the first by its pixels,
-// and the last by its name.
+// All work that follows is sized by stack.toml, so the images must be those that it claims. The first is checked by its
+// pixels, the last by its name.
 void refuse_other_images(const std::filesystem::path& folder, const Configuration& configuration,
                          const std::vector<double>& positions) {
     const auto first = scan::read_frame(folder, 0, positions.front());
@@ -94,7 +94,7 @@ bool any_negative(const topography::Channels& image) {
     });
 }
 
-// The images of another instrument, each laid over the one in the middle if that is asked for.
+// The images of another instrument, each registered to the one in the middle if the configuration asks for it.
 class LaidImages {
   public:
     LaidImages(const scan::ImageSeries& series, const FrameCorrection& correction, topography::Registration what)
@@ -107,7 +107,7 @@ class LaidImages {
         for (int image = 1; image < series.size(); ++image) {
             Grid<float> next = topography::grey(corrected(image));
             if (next.columns != before.columns || next.rows != before.rows) {
-                return; // refused when it is evaluated
+                return; // the evaluation refuses this image
             }
             steps.push_back(topography::registered(before, next, what));
             before = std::move(next);
@@ -121,14 +121,14 @@ class LaidImages {
 
     topography::Channels read(int image) const { return laid(corrected(image), image); }
 
-    // Reads the image as read() does. `faults` sees it as the camera gave it, before any correction.
+    // Reads the image as read() does. `faults` gets the image before any correction, as the camera gave it.
     topography::Channels read(int image, topography::StackFaultsFinder& faults) const {
         auto channels = series_.read(image);
         faults.add(channels);
         return laid(correction_.corrected(std::move(channels), series_.name(image)), image);
     }
 
-    // Shift in pixels and scale of each image, in their order.
+    // The shift in pixels and the scale of each image, in the images' order.
     nlohmann::ordered_json json() const {
         auto rows = nlohmann::ordered_json::array();
         for (const auto& transform : transforms_) {
@@ -149,10 +149,10 @@ class LaidImages {
 
     const scan::ImageSeries& series_;
     const FrameCorrection& correction_;
-    std::vector<topography::ImageTransform> transforms_; // none: as they are
+    std::vector<topography::ImageTransform> transforms_; // empty: images are not registered
 };
 
-// A sentence for each fault that is large enough to matter: what it does to the heights, and what helps.
+// A sentence for each fault that is large enough to matter: its effect on the heights, and a remedy.
 std::vector<std::string> sentences_of(const topography::StackFaults& faults, topography::Registration registration) {
     constexpr double least_flicker = 0.01, least_saturated = 0.001, least_wander = 1; // pixel
     std::vector<std::string> sentences;
@@ -185,7 +185,8 @@ std::vector<std::string> sentences_of(const topography::StackFaults& faults, top
     return sentences;
 }
 
-// Images of an instrument that vkfv does not know are read twice: first for what their focus curves and noise suggest.
+// Images of an instrument that vkfv does not know are read twice. This first time, their focus curves and noise settle
+// the options.
 void settle(topography::TopographyOptions& options, const LaidImages& images, const std::vector<int>& order) {
     if (options.settled()) {
         return;
@@ -202,7 +203,7 @@ void settle(topography::TopographyOptions& options, const LaidImages& images, co
         }
         if (channels.front().columns != columns || channels.front().rows != rows) {
             options.focus_measure = options.focus_measure.value_or(topography::where_noise_counts);
-            return; // refused when it is evaluated
+            return; // the evaluation refuses this image
         }
         probes->add(channels);
     }
@@ -230,7 +231,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     }
     log_warnings(warnings);
     log_warnings(of_phase);
-    // The log has the instrument's already. The order is that of the run which traced the stack.
+    // The log has the instrument's warnings already. Their order is the one of the run that traced the stack.
     append(warnings, instrument.warnings);
     const auto order = order_of_images(positions.size(), stack.shuffle);
     StackEvaluation evaluation(
@@ -252,7 +253,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     for (const auto& further : {of_waves, of_phase, of_camera}) {
         append(warnings, further);
     }
-    std::error_code none; // a folder to be made is another
+    std::error_code none; // a destination that does not exist yet is another folder
     if (!std::filesystem::equivalent(stack.destination, stack.folder, none)) {
         origin = {{"stack", stack.folder.string()},
                   {"images", positions.size()},
@@ -305,7 +306,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     const auto warn = [&](const char* code, const std::string& sentence) {
         warnings.push_back({.code = code, .key = {}, .value = {}, .works = {}, .sentence = sentence});
     };
-    if (negative && !stack.corrections.dark) { // noise reaches below what was taken off
+    if (negative && !stack.corrections.dark) { // noise of an image reaches below an offset that was subtracted
         warn("negative-light",
              fmt::format(
                  "{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
@@ -313,7 +314,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
                  stack.images.string()));
     }
     const topography::StackFaults faults = finder.finish();
-    if (!stack.shuffle) { // images in random order have other faults
+    if (!stack.shuffle) { // a random order has faults of its own
         for (const auto& sentence : sentences_of(faults, configuration.registration)) {
             warn("image-fault", fmt::format("{}: {}.", stack.images.string(), sentence));
         }

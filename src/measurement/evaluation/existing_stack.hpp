@@ -1,4 +1,4 @@
-// Stacks whose images are there: of vkfv's own, evaluated anew, or of another instrument.
+// Evaluation of stacks whose images exist: stacks of vkfv anew, and images of other instruments.
 #pragma once
 
 #include "core/toml/toml_document.hpp"
@@ -13,26 +13,26 @@
 
 namespace vkfv::measurement {
 
-// Whether the images are taken in a random order, by this seed: a control, which must find no surface.
+// The seed of the random order in which images are taken, if there is one: a control, which must find no surface.
 using Shuffle = std::optional<std::uint64_t>;
 
-// A folder with its stack.toml; overrides of [topography], [diffraction] and [output] evaluate it otherwise.
+// A folder with a stack.toml. Overrides of [topography], [diffraction] and [output] change its evaluation.
 struct OwnStack {
     std::filesystem::path folder;
     std::vector<TomlOverride> overrides;
-    std::filesystem::path destination; // where the results go: the stack's own folder, or another
+    std::filesystem::path destination; // folder of the results: the stack's own, or another
     Shuffle shuffle;
 };
 
-// InputError where an override changes what the images depend on, or an image is not whole.
+// Throws InputError where an override changes what the images depend on, or an image is not whole.
 EvaluatedStack evaluate_own_stack(const OwnStack& stack);
 
-// Images alone: what an instrument's file does not say of them stands here. Lengths in mm.
+// Images of another instrument, with the facts that its files may lack. Lengths in mm.
 struct ForeignStack {
-    std::filesystem::path images;        // where they are, for the results
+    std::filesystem::path images;        // file or folder, as results.json names it
     std::vector<TomlOverride> overrides; // of [topography]
     double z_step = 0;                   // not 0; negative: the images descend
-    double z_start = 0;                  // of the first image
+    double z_start = 0;                  // height of the first image
     double pitch = 0;                    // of the pixels on the specimen
     Shuffle shuffle;
     CorrectionFiles corrections;

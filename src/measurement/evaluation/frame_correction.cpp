@@ -60,10 +60,11 @@ float median_of(std::vector<float> values) {
     return *middle;
 }
 
-// The largest value of a dark image that is not a lit pixel's. Noise and the offsets of pixels are told by the median
-// of their distances, which a few lit pixels do not move: 1.4826 of it is a standard deviation of a normal
-// distribution, of which 16 million pixels reach 5.5. Twice that and more leaves room for offsets that spread wider
-// than a normal distribution, and four steps of whole numbers for dark images whose values are nearly all the same.
+// The largest value that an unlit pixel may have in a dark image. The median of the distances from the median tells the
+// spread of noise and pixel offsets, since a few lit pixels do not move it: 1.4826 times this median is the standard
+// deviation of a normal distribution, of which 16 million pixels reach 5.5 standard deviations. A limit of more than
+// twice that leaves room for offsets that spread wider than a normal distribution. Four steps of whole numbers leave
+// room in dark images whose values are nearly all equal.
 float most_of_dark(const Grid<float>& dark) {
     const float median = median_of(dark.values);
     std::vector<float> distances;
@@ -102,7 +103,7 @@ FrameCorrection::FrameCorrection(const CorrectionFiles& files) {
                 std::ranges::transform(values, dark_[channel].values, values.begin(), std::minus<>());
             }
             const float median = median_of(values);
-            constexpr float least_share = 0.02F; // of the median: what lenses leave at a corner is more
+            constexpr float least_share = 0.02F; // of the median; lenses leave more at a corner
             if (!(median > 0)) {
                 refuse_file(*files.flat_field, "", fmt::format("a median of {:g} above the dark image", median),
                             "more light than that",
@@ -151,7 +152,7 @@ std::vector<Grid<float>> FrameCorrection::corrected(std::vector<Grid<float>> ima
         for (const std::size_t place : dead_) {
             const int column = static_cast<int>(place % static_cast<std::size_t>(grid.columns));
             const int row = static_cast<int>(place / static_cast<std::size_t>(grid.columns));
-            // The nearest ring of pixels that has one that is alive.
+            // The value is the mean of the nearest ring of pixels that has a pixel which is not dead.
             float sum = 0;
             int count = 0;
             for (int reach = 1; count == 0 && reach < std::max(grid.columns, grid.rows); ++reach) {

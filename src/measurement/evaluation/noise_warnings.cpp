@@ -28,7 +28,7 @@ std::vector<Warning> warnings_of_noise(const Configuration& configuration, const
                                    100 * whole.image_noise));
     }
     if (!configuration.camera &&
-        height_noise > noise_limits::most_of_curve_width) { // a camera's own noise is no lack of rays
+        height_noise > noise_limits::most_of_curve_width) { // more rays do not help against a camera's noise
         return of_rays("ray-noise-without-camera", height_noise, noise_limits::good_of_curve_width,
                        fmt::format("The images' noise is {:.2g} % of their brightness, and scatters the heights by "
                                    "{:.2g} um, {:.0f} % of their focus curves' width.",

@@ -9,8 +9,8 @@
 
 namespace vkfv::measurement {
 
-// Warns where the rays' noise is most of what is measured, or coarse beside the focus curves. The configuration has a
-// scan.
+// Warns where the images' noise is a large share of their brightness or, without a camera, scatters the heights by a
+// large share of the focus curves' width (noise_limits). The configuration must have a scan.
 std::vector<Warning> warnings_of_noise(const Configuration& configuration, const Evaluation& evaluation);
 
 } // namespace vkfv::measurement

@@ -20,12 +20,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double most_map_points = 420000; // of all evaluations together: 7 bytes each
+constexpr double most_map_points = 420000; // over all evaluations together; a point takes 7 bytes
 constexpr int most_map_side = 2048;
-constexpr std::size_t most_curve_values = 512; // of a curve, likewise
+constexpr std::size_t most_curve_values = 512; // of a curve, over all evaluations together
 constexpr int histogram_intervals = 100;
 
-static_assert(std::endian::native == std::endian::little); // as the scripts read
+static_assert(std::endian::native == std::endian::little); // the scripts read little endian
 
 template <class Value>
 std::string base64_of(const std::vector<Value>& values) {
@@ -54,7 +54,7 @@ Extent extent_of(const Grid<double>& values) {
     return extent;
 }
 
-// Heights in 16 bits from the lowest (0) to the highest (65534); 65535: not measured.
+// Heights as 16 bits from the lowest (0) to the highest (65534); 65535 is a point that was not measured.
 Json packed_heights(EvaluationData& data, const std::string& id, const Grid<double>& heights) {
     constexpr double steps = 65534;
     constexpr std::uint16_t nothing = 65535;
@@ -70,7 +70,7 @@ Json packed_heights(EvaluationData& data, const std::string& id, const Grid<doub
             {"blob", id}};
 }
 
-// What became of a block: measured where anything in it was, else as in its middle.
+// The state of each block of points: measured where any point of it was, otherwise the state of its middle.
 std::vector<std::uint8_t> states_of(const topography::Topography& topography, const Grid<double>& heights, int block) {
     std::vector<std::uint8_t> states;
     states.reserve(heights.values.size());
@@ -86,7 +86,7 @@ std::vector<std::uint8_t> states_of(const topography::Topography& topography, co
     return states;
 }
 
-// The all-in-focus image in 8 bits; all but the brightest thousandth are told apart.
+// The all-in-focus image in 8 bits. The brightest thousandth of the pixels is white.
 std::string texture_png(const Grid<float>& image) {
     std::vector<float> values = image.values;
     const auto place = values.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(values.size() - 1));
@@ -141,8 +141,8 @@ Json curves_data(EvaluationData& data, const std::string& name, const Evaluation
     const std::size_t kept = (heights + every - 1) / every;
     std::vector<std::uint8_t> bytes;
     bytes.reserve(points * kept);
-    // Lowest and highest value, the peak and its standard uncertainty in um, and the fit: the image of its middle, how
-    // many it reaches to either side, its largest value and coefficients.
+    // Numbers of a curve: the lowest and the highest value, the peak and its standard uncertainty in um, and the fit as
+    // the image in its middle, its half width in images, its largest value and its coefficients.
     std::vector<float> numbers;
     for (std::size_t point = 0; point < points; ++point) {
         const auto curve = std::span(curves.values).subspan(point * heights, heights);
@@ -179,7 +179,7 @@ Json curves_data(EvaluationData& data, const std::string& name, const Evaluation
 }
 
 struct Distribution {
-    std::vector<double> shares;  // of the points, an interval each
+    std::vector<double> shares;  // of the points, for each interval
     std::vector<double> heights; // um, exceeded on 0, 1 ... 100 % of the area
 };
 

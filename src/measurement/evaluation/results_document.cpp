@@ -16,7 +16,7 @@ namespace vkfv::measurement {
 
 namespace {
 
-// How many points are in each state.
+// The number of points in each state.
 nlohmann::ordered_json point_counts(const Grid<topography::PointState>& state) {
     using topography::PointState;
     const auto count = [&](PointState wanted) { return std::ranges::count(state.values, wanted); };
@@ -26,7 +26,7 @@ nlohmann::ordered_json point_counts(const Grid<topography::PointState>& state) {
             {"low_contrast", count(PointState::low_contrast)}, {"dark", count(PointState::dark)}};
 }
 
-// Levelled, with the filtered ones within.
+// The figures of the levelled surface, with those of the filtered one as a member.
 nlohmann::ordered_json json_of(const std::vector<Figures>& figures) {
     auto json = json_of(figures.front());
     if (figures.size() > 1) {
@@ -51,7 +51,8 @@ nlohmann::ordered_json json_of(const topography::TopographyOptions& options) {
             {"repair_outliers", options.repair_outliers}};
 }
 
-// Where the values of curves.npy stand: pixels of an image from its left and upper end, heights of the focal plane.
+// The places of the values in curves.npy: rows and columns of an image, counted from its upper left corner, and heights
+// of the focal plane.
 nlohmann::ordered_json places_json(const topography::FocusCurves& curves, int image_rows) {
     std::vector<int> rows;
     std::transform(curves.rows.rbegin(), curves.rows.rend(), std::back_inserter(rows),
@@ -59,7 +60,7 @@ nlohmann::ordered_json places_json(const topography::FocusCurves& curves, int im
     return {{"file", "curves.npy"}, {"rows", rows}, {"columns", curves.columns}, {"z", curves.z}};
 }
 
-// The keys are those of assets/schemas without their unit; values are in mm, which as_declared() converts.
+// The keys are those of assets/schemas without their unit. The values are in mm, which as_declared() converts.
 nlohmann::ordered_json figures_of_curves(const Evaluation& evaluation) {
     nlohmann::ordered_json figures = {{"topography", json_of(evaluation.options)}};
     if (const auto& flatness = evaluation.flatness) {
@@ -133,7 +134,7 @@ nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
         if (results.is_object() && results.contains(key)) {
             run[key] = results.at(key);
             if (run[key].is_object()) {
-                run[key].erase("warnings"); // of results that an earlier version wrote
+                run[key].erase("warnings"); // results of an earlier version have them here
             }
         }
     }
@@ -141,7 +142,7 @@ nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
 }
 
 std::vector<Warning> warnings_of_run(const std::filesystem::path& folder) {
-    // Warnings that need the traced light are kept; all others are found again by the evaluation.
+    // Warnings that need the traced light are kept; the evaluation finds all others again.
     constexpr std::array of_images = {"ray-noise-above-camera", "saturated",    "grey-values-end",
                                       "dark-cut-off",           "coarse-waves", "folded-waves"};
     std::error_code none;
@@ -154,7 +155,7 @@ std::vector<Warning> warnings_of_run(const std::filesystem::path& folder) {
         if (results.is_object() && results.contains("warnings")) {
             warnings = warnings_of_json(results.at("warnings"));
         }
-    } catch (const nlohmann::json::exception&) { // changed by another program
+    } catch (const nlohmann::json::exception&) { // another program changed the file
         return {};
     }
     std::erase_if(warnings, [&](const Warning& warning) {

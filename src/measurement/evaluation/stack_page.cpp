@@ -19,7 +19,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-// "form plane, L-filter 80 µm (Gaussian)"
+// A treatment as the page writes it: "form plane, L-filter 80 µm (Gaussian)".
 std::string treatment_of(const surface::Band& band) {
     std::string text = report::treatment_text(band);
     for (auto at = text.find(" um"); at != std::string::npos; at = text.find(" um", at)) {
@@ -47,7 +47,7 @@ std::string text_of(const nlohmann::ordered_json& value) {
                              : value.dump();
 }
 
-// Columns of numbers behind those that the rows below the head have, each of them alike.
+// Appends columns of numbers to the rows below the head. All numbers of a column have the same form.
 void add_columns(Rows& rows, const std::vector<std::vector<double>>& columns) {
     for (const auto& column : columns) {
         const auto texts = report::reader_column(column);
@@ -57,7 +57,7 @@ void add_columns(Rows& rows, const std::vector<std::vector<double>>& columns) {
     }
 }
 
-// "Sq / µm", "Vmp / (µm³/µm²)"
+// A name as the page writes it: "Sq / µm", "Vmp / (µm³/µm²)".
 std::string with_unit(const std::string& name, const std::string& unit_in_keys) {
     const std::string unit = report::reader_unit(unit_in_keys);
     return name + (unit.empty() ? "" : unit.find('/') == std::string::npos ? " / " + unit : " / (" + unit + ")");
@@ -97,7 +97,8 @@ void add_dimensions(report::Page& page, const char* caption, const std::vector<S
                "standard deviation"}};
     for (const auto& one : dimensions) {
         const auto row = one.in_unit();
-        // Nominal and true values have no uncertainty: differences from them have that of the measured one.
+        // Nominal and true values have no uncertainty, so differences from them have the uncertainty of the measured
+        // value.
         const bool uncertain = row.standard_error > 0 && std::isfinite(row.measured);
         const auto exact = report::form_for(uncertain ? std::vector{row.nominal, row.truth}
                                                       : std::vector{row.nominal, row.truth, row.measured});
@@ -112,7 +113,7 @@ void add_dimensions(report::Page& page, const char* caption, const std::vector<S
     page.table(caption, rows);
 }
 
-// A table a treatment; those that have none (nothing was measured) are left out.
+// Adds a table for each treatment, except where nothing was measured.
 bool add_parameters(report::Page& page, const std::string& prefix, const std::vector<Figures>& all) {
     bool any = false;
     for (const auto& figures : all) {
@@ -138,13 +139,13 @@ bool add_parameters(report::Page& page, const std::string& prefix, const std::ve
     return any;
 }
 
-// The members that are there, in this order.
+// Adds a table of these members, in this order, as far as the object has them.
 void add_members(report::Page& page, const char* caption, const nlohmann::ordered_json& object,
                  const std::vector<std::string>& keys) {
     Rows rows{{"", "value"}};
     for (const std::string& key : keys) {
         if (const auto found = object.find(key); found != object.end()) {
-            // A digest and a seed are names, not quantities.
+            // Digests and seeds are names and not quantities.
             const bool name = key.ends_with("seed") || key.ends_with("digest");
             rows.push_back({report::reader_label(key), name && !found->is_string() ? found->dump() : text_of(*found)});
         }
@@ -184,7 +185,7 @@ void add_light(report::Page& page, const scan::MeanLedger& ledger) {
     page.table("Mean of all images; what is not listed took none", rows);
 }
 
-// A reader of the report alone has not seen the terminal: what it said in judgement and of warnings stands here too.
+// A reader of the report may not have seen the terminal, so the page repeats its verdict and its warnings.
 void add_verdict(report::Page& page, const nlohmann::ordered_json& results) {
     const Verdict verdict = verdict_of_json(results.at("verdict"));
     std::string text;

@@ -1,4 +1,4 @@
-// The report of a stack as one page.
+// The report of a stack as one page of HTML.
 #pragma once
 
 #include "measurement/evaluation/evaluation_figures.hpp"
@@ -13,7 +13,7 @@
 
 namespace vkfv::measurement {
 
-// What one evaluation shows of itself.
+// The parts of the page that belong to one evaluation.
 struct EvaluationPage {
     std::vector<Figures> figures;
     std::vector<StandardDimension> dimensions;
@@ -25,15 +25,14 @@ struct StackPage {
     EvaluationPage plain;
     std::optional<EvaluationPage> diffracted;
     EvaluationData frames;
-    nlohmann::ordered_json
-        results;               // of results.json: the evaluation's settings, points by state, what is said of the run
-    scan::MeanLedger ledger;   // empty: not known
-    std::string layout;        // the instrument as SVG; empty: not known
-    std::string configuration; // TOML; empty: none
+    nlohmann::ordered_json results; // from results.json: settings, points by state, and the run
+    scan::MeanLedger ledger;        // empty: not known
+    std::string layout;             // the instrument as SVG; empty: not known
+    std::string configuration;      // TOML; empty: none
 };
 
-// HTML; without times, so that it is the same bytes whenever the stack is traced. These it takes from timings.js beside
-// it, if that is there.
+// Returns HTML. It has no times, so that it is the same bytes whenever the stack is traced; the page takes them from
+// timings.js in its folder, if there is such a file.
 std::string stack_page(const StackPage& content);
 
 } // namespace vkfv::measurement
