@@ -17,13 +17,13 @@ namespace vkfv::measurement {
 
 namespace {
 
-// Of the probe that sets the exposure time.
+// Limits of the probe that sets the exposure time, and of the squares in which its light is averaged.
 constexpr int most_probes = 5;
 constexpr std::uint64_t most_probe_rays = 20'000'000;
 constexpr std::uint32_t first_probe_image = 1u << 31; // keys random numbers that no image of a stack has
 constexpr double noise_of_squares = 0.02, outshone_share = 0.999;
 
-constexpr double most_ray_noise = 1.0 / 3; // of the camera's
+constexpr double most_ray_noise = 1.0 / 3; // share of the camera's noise
 constexpr double most_saturated = 1e-3;
 
 Grid<double> blurred(const optics::Diffraction& diffraction, const Grid<double>& flux) {
@@ -33,7 +33,7 @@ Grid<double> blurred(const optics::Diffraction& diffraction, const Grid<double>&
     return result;
 }
 
-// Evenly spread, the first and the last among them.
+// Evenly spread heights, with the first and the last among them.
 std::vector<double> probe_heights(std::span<const double> heights) {
     const auto count = std::min<std::size_t>(heights.size(), most_probes);
     std::vector<double> chosen;
@@ -43,7 +43,8 @@ std::vector<double> probe_heights(std::span<const double> heights) {
     return chosen;
 }
 
-// Means of the squares of so many pixels a side; what is left over at the right and the top does not count.
+// The means of squares with this number of pixels a side. Pixels that fill no square, at the right and the top, are
+// left out.
 std::vector<double> means_of_squares(const Grid<double>& values, int side) {
     std::vector<double> means;
     for (int row = 0; row + side <= values.rows; row += side) {
@@ -79,7 +80,7 @@ std::optional<CameraNote> CameraNote::parse(const std::string& text) {
     if (!json.is_object()) {
         return std::nullopt;
     }
-    const auto number = [&](const char* key) { // what is not finite is null in JSON
+    const auto number = [&](const char* key) { // JSON has null for numbers that are not finite
         const auto found = json.find(key);
         return found != json.end() && found->is_number() ? found->get<double>()
                                                          : std::numeric_limits<double>::quiet_NaN();
@@ -103,7 +104,7 @@ scan::Frame ImagingCamera::develop(int image, const trace::Image& exposure) cons
         auto light = camera_.light_of(flux, exposure.standard_error, exposure_time_);
         if (configuration_.pixel_type != scan::PixelType::float32 && camera_.options().frames > 1) {
             light.camera_noise =
-                std::hypot(light.camera_noise, camera_.quantisation_noise()); // the mean is rounded too
+                std::hypot(light.camera_noise, camera_.quantisation_noise()); // the mean of the frames is rounded too
         }
         return scan::Frame{
             .values = scan::as_stored(camera_.image(flux, exposure_time_, static_cast<std::uint32_t>(image), pattern_),
@@ -162,7 +163,7 @@ double brightest_flux(const Grid<double>& flux, const Grid<double>& standard_err
         variance += standard_error.values[k] * standard_error.values[k];
     }
     const auto pixels = static_cast<double>(flux.values.size());
-    const double noise = std::sqrt(variance / pixels) / (sum / pixels); // of a pixel, over the mean
+    const double noise = std::sqrt(variance / pixels) / (sum / pixels); // root mean square over the mean flux
     int side = 1;
     while (2 * side <= std::min(flux.columns, flux.rows) && noise / side > noise_of_squares) {
         side *= 2;

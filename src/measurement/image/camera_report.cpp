@@ -22,10 +22,10 @@ constexpr glm::dvec2 panel{520, 380};
 constexpr double margin = 24, head = 56;
 
 struct Row {
-    const char* name; // as in JSON, with its unit
+    const char* name; // key in JSON, with its unit
     const char* words;
     MeasuredFigure PhotonTransferFigures::*figure;
-    double unit = 1; // of the figure in that unit
+    double unit = 1; // factor from the figure to the unit in the name
 };
 constexpr std::array rows = {
     Row{"gain_dn_per_e", "system gain K / (DN/e-)", &PhotonTransferFigures::gain},
@@ -49,7 +49,7 @@ glm::dvec2 corner(int place) {
     return {margin + (panel.x + margin) * place, head};
 }
 
-// Above the dark, of a level.
+// The mean grey value of a level, above the dark one.
 double signal_of(const CameraMeasurement& measurement, const PairLevel& level) {
     return mean_value(level) - mean_value(measurement.data.series.front());
 }

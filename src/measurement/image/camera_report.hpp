@@ -21,20 +21,20 @@ struct CameraMeasurement {
 CameraMeasurement measure_camera(const camera::Camera& camera, const camera::PhotonTransferOptions& options,
                                  const camera::ImageTaker& take = {});
 
-// A table: put in, measured, statistical error, deviation.
+// A table with a column each for the camera's value, the measured value, its statistical error and its deviation.
 std::string summary(const CameraMeasurement& measurement);
 nlohmann::ordered_json camera_json(const CameraMeasurement& measurement);
-// Sentences on what the camera's values do to its figures.
+// Warnings about values of the camera that falsify its figures.
 std::vector<Warning> warnings_of(const camera::Camera& camera);
-// Sentences on figures that the measurement could only bound.
+// Warnings about figures that the measurement could only bound.
 std::vector<Warning> warnings_of(const CameraMeasurement& measurement);
 
-// SVG: variance over mean; signal to noise ratio over photons, with the model's; grey value over photons, and its
-// deviation from a line.
+// Charts as SVG: variance over mean; signal to noise ratio over photons, measured and by the model; grey value over
+// photons, and its deviation from a line.
 std::string transfer_chart(const CameraMeasurement& measurement);
 std::string signal_to_noise_chart(const CameraMeasurement& measurement);
 std::string linearity_chart(const CameraMeasurement& measurement);
-// The points of these charts: series, photons, exposure_s, mean_dn, variance_dn2.
+// The points of the charts as CSV: series, photons, exposure_s, mean_dn, variance_dn2.
 std::string transfer_table(const CameraMeasurement& measurement);
 
 } // namespace vkfv::measurement

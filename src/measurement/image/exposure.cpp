@@ -104,7 +104,7 @@ double signal_to_noise(const trace::Image& image) {
 
 namespace {
 
-// How many times as many rays; noise falls with the root of their number.
+// The factor by which the number of rays must grow, since noise falls with the root of it.
 double times_as_many_rays(double share, double wanted) {
     return std::ceil(share * share / (wanted * wanted));
 }

@@ -26,13 +26,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double least_signal_to_noise = 10; // of 100 detected rays a pixel
+constexpr double least_signal_to_noise = 10; // by 100 detected rays a pixel
 
 std::string text_of(const trace::Ledger& ledger) {
     std::string text = fmt::format("{:<52} {:>14} {:>9}\n", "energy ledger", "W", "share");
     for (const auto& entry : ledger.entries) {
         if (entry.rays == 0 && entry.power == 0) {
-            continue; // ledger.csv of a stack lists them all
+            continue; // left out here; ledger.csv of a stack lists all entries
         }
         text +=
             fmt::format("{:<52} {:>14.6e} {:>8.4g} %\n", entry.name, entry.power, 100 * entry.power / ledger.emitted);
@@ -122,7 +122,7 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
                                      remedy_of_noise(configuration, 1 / ratio, 1 / least_signal_to_noise))});
     }
     log_warnings(result.warnings);
-    append(result.warnings, exposure.warnings); // which the log has already
+    append(result.warnings, exposure.warnings); // in the log already
     append(result.warnings, instrument.warnings);
     return result;
 }

@@ -15,12 +15,12 @@ struct ImageResult {
     Exposure exposure;
     double focal_height = 0; // mm
     std::filesystem::path file;
-    std::filesystem::path picture; // beside it, an SVG
-    std::vector<Warning> warnings; // what is wrong with its light
+    std::filesystem::path picture; // SVG beside the image
+    std::vector<Warning> warnings; // about the image's light and the instrument
 };
 
-// Takes the image at a height of the focal plane (mm) and writes it as `file`, a TIFF, with its picture; warnings are
-// told in the log too. Throws InputError, DeviceError, RunError.
+// Takes the image at a height of the focal plane (mm) and writes it as the TIFF `file`, with its picture. The log gets
+// the warnings too. Throws InputError, DeviceError, RunError.
 ImageResult measure_image(const Configuration& configuration, double focal_height, const std::filesystem::path& file);
 
 // The ledger, counts, times and files as a text.

@@ -12,7 +12,7 @@ namespace vkfv::measurement {
 
 namespace {
 
-constexpr double unit_length_tolerance = 1e-6; // directions written with seven digits pass
+constexpr double unit_length_tolerance = 1e-6; // admits directions written with seven digits
 
 } // namespace
 

@@ -31,7 +31,7 @@ namespace vkfv::measurement {
 
 namespace {
 
-// Lenses, pupils, illumination, image, resolution.
+// The groups of figures: lenses, pupils, illumination, image, resolution.
 std::vector<FigureGroup> groups_of(const Configuration& configuration, const optics::Instrument& instrument,
                                    const optics::ImageQuality& quality) {
     const optics::FirstOrder& first_order = instrument.first_order;
@@ -92,7 +92,7 @@ std::vector<FigureGroup> groups_of(const Configuration& configuration, const opt
     };
 }
 
-// At the points that the image quality tells of.
+// The wavefronts at the points of the field that the image quality describes.
 struct WavefrontQualities {
     optics::WavefrontQuality axis, edge, corner;
 };
@@ -143,7 +143,7 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
     const auto of_lights = limits_of_lights(options, instrument);
     const WaveLimits limits = worst_of(of_lights);
     append(warnings, warnings_of(limits));
-    std::uint64_t memory = 0, memory_of_host = 0; // each source's light is sorted by itself
+    std::uint64_t memory = 0, memory_of_host = 0; // the light of each source is sorted by itself
     for (const WaveLimits& light : of_lights) {
         const trace::WaveSizes sizes{
             .cells = light.cells, .parts = light.parts, .tiles = light.tiles, .pixels = instrument.detector_pixels()};
@@ -238,7 +238,7 @@ SpecimenFigures figures_of_specimen(const Configuration& configuration, const op
 
 void warn_of_size(const SpecimenFigures& specimen, const optics::FirstOrder& first_order,
                   const optics::ImageQuality& quality, std::vector<Warning>& warnings) {
-    // A rim around the field belongs to a good model: light that is scattered there comes into the field too.
+    // A good model has a rim around the field, since light that is scattered there comes into the field too.
     constexpr double most = 2.5;
     for (const int axis : {0, 1}) {
         if (specimen.sides[axis] > most * quality.field[axis] + first_order.pixel_pitch) {
@@ -258,10 +258,11 @@ void warn_of_size(const SpecimenFigures& specimen, const optics::FirstOrder& fir
 }
 
 // A prescription that is written from infinity towards its focus, as most designs are, makes a valid microscope that
-// forms no image. It is recognised by what the objective does when it is turned round. listed: waves RMS on the axis.
+// forms no image. A far better wavefront of the objective turned round tells that it is one. listed: wavefront error of
+// the objective as listed, waves RMS on the axis.
 void warn_of_direction(const Configuration& configuration, double listed, std::vector<Warning>& warnings) {
     constexpr double suspicious = 0.25; // waves RMS: a Strehl ratio below 0.1
-    constexpr double far_better = 0.25; // of the wavefront
+    constexpr double far_better = 0.25; // share of the wavefront error as listed
     if (!(listed > suspicious)) {
         return;
     }
@@ -270,7 +271,7 @@ void warn_of_direction(const Configuration& configuration, double listed, std::v
     double turned = 0;
     try {
         turned = optics::wavefront_quality(assemble_for_figures(other), {0, 0}).rms;
-    } catch (const std::runtime_error&) { // no microscope at all
+    } catch (const std::runtime_error&) { // the turned objective makes no microscope
         return;
     }
     if (turned < far_better * listed) {
@@ -322,7 +323,7 @@ FigureGroup figures_of_expectation(const Configuration& configuration, const Exp
     return group;
 }
 
-// The figures that a first look at an instrument asks for; --all prints the others too.
+// The figures of a first look at an instrument; --all prints the others too.
 bool matters(const Figure& figure) {
     constexpr std::array names = {"working_distance_mm",
                                   "numerical_aperture",
@@ -348,20 +349,20 @@ bool matters(const Figure& figure) {
     return std::ranges::any_of(names, [&](const char* name) { return std::string_view(name) == figure.name; });
 }
 
-// Aligned, at most 110 columns wide.
+// A line of a table with aligned columns: name, value and meaning.
 std::string line_of(const char* name, const std::string& value, const std::string& meaning) {
     return fmt::format("  {:<35} {:>12}  {}\n", name, value, meaning);
 }
 
 std::string value_text(double value) {
-    constexpr double rounding = 1e-12; // of all figures, in their units
+    constexpr double rounding = 1e-12; // in the unit of any figure
     return std::isfinite(value) ? fmt::format("{:.6g}", std::abs(value) < rounding ? 0 : value) : "-";
 }
 
 } // namespace
 
 InstrumentFigures instrument_figures(const Configuration& configuration) {
-    // What does not wait for anything else has threads of its own: every command of a new instrument begins with this.
+    // Parts that wait for no other have threads of their own, since every command of a new instrument begins here.
     std::future<specimen::Specimen> specimen;
     if (configuration.specimen) {
         specimen = std::async(std::launch::async, [&] { return make_specimen(configuration); });

@@ -1,4 +1,5 @@
-// What --check says of a configuration: the instrument's first-order data and quality, and what its exposures will be.
+// The figures that --check prints of a configuration: the instrument's first-order data and quality, its scan, specimen
+// and verdict.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -18,7 +19,7 @@
 namespace vkfv::measurement {
 
 struct Figure {
-    const char* name; // as in JSON, with its unit
+    const char* name; // key in JSON, with its unit
     double value;     // not finite: undefined
     const char* meaning;
 };
@@ -28,16 +29,16 @@ struct FigureGroup {
     std::vector<Figure> figures;
 };
 
-// Lengths in mm.
+// The configured scan; lengths in mm.
 struct ScanFigures {
     std::size_t images = 0;
     std::uint64_t rays_per_image = 0;
-    double first = 0; // height of the focal plane
+    double first = 0; // height of the focal plane in the first image
     double last = 0;
 };
 
 struct SpecimenFigures {
-    glm::dvec2 sides{0}; // of its footprint
+    glm::dvec2 sides{0}; // mm, of its footprint
     Relief relief;
 };
 
@@ -49,12 +50,12 @@ struct InstrumentFigures {
     std::vector<Warning> warnings;
 };
 
-// Needs no device. Throws InputError.
+// Computes the figures without a device. Throws InputError.
 InstrumentFigures instrument_figures(const Configuration& configuration);
 
-// file: of the configuration. What is not finite becomes null.
+// file: the configuration's name. Numbers that are not finite become null.
 nlohmann::ordered_json instrument_json(const InstrumentFigures& figures, const std::filesystem::path& file);
-// Tables for a person: of all figures, or of those that matter at first.
+// Tables for a terminal, with all figures or with those of a first look alone.
 std::string instrument_text(const InstrumentFigures& figures, bool all);
 
 } // namespace vkfv::measurement

@@ -24,7 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kept_names = "figures-";
-constexpr std::size_t most_kept = 200; // of a few thousand bytes each
+constexpr std::size_t most_kept = 200; // reports, of a few thousand bytes each
 
 struct KeptReport {
     std::vector<FileStamp> files;
@@ -32,8 +32,8 @@ struct KeptReport {
     InstrumentReport report;
 };
 
-// Of all that the report comes of, but for the files: the program, the configuration with what stands for its parts'
-// files, where assets lie. Empty: nothing may be kept.
+// The name of a kept report: a digest of the program, the configuration with its identity, and the folders of assets.
+// The files that were read are checked apart from it. An empty name means that nothing may be kept.
 std::string name_of(const Configuration& configuration, const std::filesystem::path& file) {
     const std::string program = build_id();
     if (program.empty()) {
@@ -83,7 +83,7 @@ std::optional<KeptReport> read_kept(const std::string& name) {
         for (const Json& message : json.at("messages")) {
             kept.messages.push_back({.level = message.at(0), .text = message.at(1)});
         }
-    } catch (const Json::exception&) { // whole, and yet of another making: a cache is made anew
+    } catch (const Json::exception&) { // another program wrote the file: the report is made anew
         return std::nullopt;
     }
     return kept;
@@ -94,7 +94,7 @@ void keep(const std::string& name, const KeptReport& kept) {
         const std::string text = written(kept);
         write_cached(name, std::as_bytes(std::span(text)));
         thin_out_cached(kept_names, most_kept);
-    } catch (const Json::type_error&) { // a path that is no UTF-8
+    } catch (const Json::type_error&) { // a path is no UTF-8
     }
 }
 
@@ -122,7 +122,7 @@ InstrumentReport instrument_report(const Configuration& configuration, const std
                                .json = instrument_json(figures, file)}};
     made.files = read.stamps();
     made.messages = heard.messages();
-    // A log that leaves some messages out has not told what to repeat.
+    // A log that leaves some messages out has not heard all that a later run must repeat.
     if (!name.empty() && spdlog::should_log(spdlog::level::info)) {
         keep(name, made);
     }

@@ -1,4 +1,4 @@
-// What `vkfv check` prints, kept from one run to the next.
+// The report that `vkfv check` prints, kept from one run to the next.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -16,13 +16,13 @@ namespace vkfv::measurement {
 struct InstrumentReport {
     Verdict verdict;
     std::vector<Warning> warnings;
-    std::string figures_that_matter, all_figures; // tables for a person
-    nlohmann::ordered_json json;                  // all of it
+    std::string figures_that_matter, all_figures; // tables for a terminal
+    nlohmann::ordered_json json;                  // all figures, verdict and warnings
 };
 
-// Of instrument_figures(). The same configuration, by the same program, is not computed again as long as every file
-// that was read is as it was; messages to the log come as they came the first time. file: as the report names the
-// configuration. Throws InputError.
+// The report of instrument_figures(). A report of the same configuration by the same program is kept and not computed
+// again, as long as no file that was read has changed; the log then gets the messages of the first time again. file:
+// the configuration's name in the report. Throws InputError.
 InstrumentReport instrument_report(const Configuration& configuration, const std::filesystem::path& file);
 
 } // namespace vkfv::measurement

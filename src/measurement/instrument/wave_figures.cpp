@@ -19,7 +19,7 @@ namespace {
 constexpr int half_heights = 20;
 constexpr int frequency_steps = 48;
 constexpr int half_places = 40;
-constexpr double rings_shown = 5; // of an ideal lens
+constexpr double rings_shown = 5; // dark rings of an ideal lens within a point spread
 constexpr int zernike_terms = 37;
 constexpr int half_pupil = 64;
 
@@ -31,7 +31,7 @@ WaveAxes axes_of(const optics::PointWaves& on_axis, double reach) {
     for (int i = 0; i <= frequency_steps; ++i) {
         axes.frequencies.push_back(on_axis.cutoff() * i / frequency_steps);
     }
-    // Rings lie 1 / cutoff apart.
+    // Dark rings of an ideal lens lie about 1 / cutoff apart.
     for (int i = -half_places; i <= half_places; ++i) {
         axes.places.push_back(rings_shown / on_axis.cutoff() * i / half_places);
     }
@@ -69,7 +69,7 @@ void measure_wavefront(WavePoint& point, const optics::PointWaves& image) {
     }
 }
 
-// mirrored: about the radial direction, as of a symmetric instrument.
+// mirrored: the point spread is the same on both sides of the radial direction, as with a symmetric instrument.
 void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::PointWaves& image, bool mirrored) {
     const double reach = axes.places.back();
     const optics::PointSpread spread = image.point_spread(std::sqrt(2.0) * reach);
@@ -99,7 +99,7 @@ void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::PointW
     }
 }
 
-// round: all directions are alike.
+// round: all directions across the axis are alike.
 void measure_through_focus(WavePoint& point, const WaveAxes& axes, const optics::PointWaves& focused, bool round) {
     const glm::dvec2 tangential(-point.radial.y, point.radial.x);
     point.radial_transfer = Grid<std::complex<double>>(count(axes.frequencies), count(axes.heights));

@@ -17,7 +17,7 @@ namespace {
 constexpr glm::dvec2 panel{420, 310};
 constexpr double margin = 24, head = 56;
 
-// A row a point, a panel a column.
+// A sheet of panels: a row for each point of the field, a column for each kind of panel.
 class Sheet {
   public:
     Sheet(const std::string& title, int columns) : title_(title), columns_(columns) {
@@ -62,7 +62,7 @@ std::string heading(const WavePoint& point, const char* what) {
     return fmt::format("{}: {}", point.name, what);
 }
 
-// The row of z = 0.
+// The row of height z = 0.
 int focus_row(const WaveFigures& figures) {
     return static_cast<int>(figures.axes.heights.size() / 2);
 }
@@ -107,7 +107,7 @@ void draw_encircled(Sheet& sheet, const WavePoint& point) {
     const double scale = 2 * pi * point.aperture / (point.wavelength_um * mm_per_um);
     for (const glm::dvec2& part : point.encircled) {
         curves[0].points.emplace_back(part.x * um_per_mm, part.y);
-        // Rayleigh's formula (Born and Wolf, section 8.5.2).
+        // The share by Rayleigh's formula for an ideal lens (Born and Wolf, section 8.5.2).
         const double v = scale * part.x;
         curves[1].points.emplace_back(part.x * um_per_mm, 1 - std::pow(std::cyl_bessel_j(0.0, v), 2) -
                                                               std::pow(std::cyl_bessel_j(1.0, v), 2));
@@ -116,7 +116,7 @@ void draw_encircled(Sheet& sheet, const WavePoint& point) {
                        report::axis_over(curves, 0, "radius / um"), {0, 1, "", false}, curves);
 }
 
-// Dark rings are seen by the root.
+// The root makes dark rings visible.
 Grid<double> rooted(Grid<double> values) {
     for (double& value : values.values) {
         value = std::sqrt(std::max(0.0, value));
@@ -205,7 +205,7 @@ std::string wavefront_picture(const WaveFigures& figures, const std::string& tit
         std::vector<report::Curve> bars;
         report::Curve coefficients{.name = "", .points = {}, .spreads = {}, .line = true};
         for (std::size_t j = 3; j < point.zernike.size(); ++j) {
-            // A bar a coefficient, as a line with gaps.
+            // Each coefficient is a bar, drawn as a line with a gap behind it.
             const auto number = static_cast<double>(j + 1);
             coefficients.points.emplace_back(number, 0);
             coefficients.points.emplace_back(number, point.zernike[j]);

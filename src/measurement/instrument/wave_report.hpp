@@ -1,4 +1,4 @@
-// Figures of waves as pictures and tables.
+// Pictures and tables of wave_figures().
 #pragma once
 
 #include "measurement/instrument/wave_figures.hpp"
@@ -7,12 +7,12 @@
 
 namespace vkfv::measurement {
 
-// SVG: a row a point of the field.
+// SVG with a row for each point of the field.
 std::string transfer_picture(const WaveFigures& figures, const std::string& title);
 std::string spread_picture(const WaveFigures& figures, const std::string& title);
 std::string wavefront_picture(const WaveFigures& figures, const std::string& title);
 
-// CSV.
+// Tables as CSV.
 std::string transfer_table(const WaveFigures& figures);
 std::string spread_table(const WaveFigures& figures);
 std::string encircled_table(const WaveFigures& figures);

@@ -26,15 +26,15 @@ namespace vkfv::measurement {
 namespace {
 
 constexpr int least_sample_side = 36, most_sample_side = 48;             // pixels
-constexpr std::uint64_t fewest_sample_rays = 32, most_sample_rays = 256; // a pixel
-constexpr std::uint64_t rays_of_sample = 100'000;                        // traced twice, in a second on two cores
+constexpr std::uint64_t fewest_sample_rays = 32, most_sample_rays = 256; // for each pixel
+constexpr std::uint64_t rays_of_sample = 100'000; // at each of two heights, a second on two cores
 constexpr std::uint64_t rays_of_forward_probe = 100'000;
 
 struct Sample {
     trace::Image image;
-    trace::Image defocused; // with the focal plane that much higher
+    trace::Image defocused; // the focal plane is higher by `defocus`, mm
     double defocus = 0;
-    std::vector<bool> in_focus; // pixels whose surface is within the focus
+    std::vector<bool> in_focus; // whether a pixel's surface is within the focus
     double rays_per_pixel = 0;
     double pitch = 0;
 };
@@ -89,7 +89,7 @@ std::optional<Sample> sample_of(const Configuration& configuration, const specim
         const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
         std::ranges::nth_element(heights, middle);
         const double height = *middle;
-        constexpr double share_of_deviation = 0.5; // texture is well above noise there, and well below its maximum
+        constexpr double share_of_deviation = 0.5; // texture is above noise there, and below its maximum
         sample.defocus = share_of_deviation * curve_deviation;
         const std::array heights_of_focus = {height, height + sample.defocus};
         const auto instrument = assemble_silently(part, specimen, heights_of_focus);
@@ -100,7 +100,7 @@ std::optional<Sample> sample_of(const Configuration& configuration, const specim
         for (const double one : truth.height.values) {
             sample.in_focus.push_back(std::abs(one - height) <= 0.5 * curve_deviation);
         }
-    } catch (const InputError&) { // light that cannot be turned round
+    } catch (const InputError&) { // light cannot be traced backward
         return std::nullopt;
     }
     return sample;
@@ -117,7 +117,8 @@ double mean_where(const Grid<double>& values, const std::vector<bool>& chosen, d
     return count > 0 ? sum / count : Expectation::unknown;
 }
 
-// The blur that images have before their noise counts, over the same pixels; none: the light as it comes.
+// The blur that images have before their noise counts, for an image of this many pixels; none: the light is not
+// blurred.
 std::optional<optics::Diffraction> blur_of(const Configuration& configuration, const optics::Instrument& instrument,
                                            ImageSize pixels) {
     if (!configuration.trace.waves && !(configuration.camera && configuration.diffraction.airy)) {
@@ -128,12 +129,12 @@ std::optional<optics::Diffraction> blur_of(const Configuration& configuration, c
         pixels.columns, pixels.rows, instrument.first_order.pixel_pitch);
 }
 
-// Light of mean 1 whose pixels vary independently by this share.
+// Light of mean 1 whose pixels have independent noise of this standard deviation.
 Grid<float> noise_image(ImageSize pixels, double share) {
     std::mt19937 random(1); // the same numbers everywhere
     Grid<float> image(pixels.columns, pixels.rows);
     for (float& value : image.values) {
-        double sum = 0; // of twelve uniform numbers: a normal one but for its farthest tails
+        double sum = 0; // sum of twelve uniform numbers, normal but for its farthest tails
         for (int k = 0; k < 12; ++k) {
             sum += static_cast<double>(random()) / 4294967296.0;
         }
@@ -142,15 +143,15 @@ Grid<float> noise_image(ImageSize pixels, double share) {
     return image;
 }
 
-// The focus measure of noise of variance 1 over the brightness, after the blur: N_1 and g^2.
+// The focus measure of noise whose variance is 1 over the brightness, after the blur: N_1 and g^2 of the header.
 struct NoiseOfMeasure {
     double energy = 0;
     double gain_square = 0;
-    double grain = 1; // pixels that the measure's responses to noise share
-    double kept = 1;  // share of the pixels' variance that the blur leaves
+    double grain = 1; // number of pixels that share the measure's response to noise
+    double kept = 1;  // share of the pixels' variance left by the blur
 };
 
-// blurred: noise of the light, which comes before the blur; else noise that comes after it, as a camera's.
+// blurred: the noise is of the light, so that the blur acts on it; otherwise it comes after the blur, as a camera's.
 NoiseOfMeasure noise_of(const topography::TopographyOptions& options, const Configuration& configuration,
                         const optics::Instrument& instrument, bool blurred) {
     constexpr double share = 0.05;
@@ -207,13 +208,13 @@ struct Texture {
     double error = Expectation::unknown;  // its standard error
 };
 
-// variance: of the sample's pixels over their squared mean.
+// variance: relative variance of the sample's pixels.
 Texture texture_of_image(const trace::Image& image, const Sample& sample, const topography::TopographyOptions& options,
                          const NoiseOfMeasure& noise, const std::optional<optics::Diffraction>& blur, double variance) {
     const topography::FocusWindow window(options.window_px, options.window_shape);
     Grid<float> light(image.flux.columns, image.flux.rows);
     std::ranges::copy(image.flux.values, light.values.begin());
-    // Small numbers of watts, squared, would leave a float's range.
+    // The light is divided by its mean, since squares of small numbers of watts leave a float's range.
     const double mean =
         std::accumulate(light.values.begin(), light.values.end(), 0.0) / static_cast<double>(light.values.size());
     if (!(mean > 0)) {
@@ -242,14 +243,14 @@ Texture texture_of_image(const trace::Image& image, const Sample& sample, const 
     const double windows =
         std::max(1.0, count / window.pixels(light.columns, light.rows, light.columns / 2, light.rows / 2));
     const double scatter = std::sqrt(std::max(0.0, squares / count - found * found) / windows);
-    constexpr double of_model = 0.1; // of the noise's energy, by magnitudes that add up as if they were energies
+    constexpr double of_model = 0.1; // share of the noise's energy by which its model may be wrong
     return {.energy = found - variance * noise.energy,
             .error = std::hypot(scatter, of_model * variance * noise.energy)};
 }
 
-// The deviation w of a focus curve whose texture fades as S(z) = S(0) exp(-z^2 / w^2): fine waves fade sooner than
-// those that planned, the deviation that the optics tell, is of. Within a factor of what is planned, since a sample is
-// small.
+// The deviation w of a focus curve whose texture fades as S(z) = S(0) exp(-z^2 / w^2). Fine waves fade sooner than the
+// waves that the planned deviation, by the optics, is for. The result stays within a factor of the planned one, since a
+// sample is small.
 double faded_deviation(double planned, double defocus, const Texture& in_focus, const Texture& out_of_focus) {
     constexpr double least = 0.4, most = 1.0;
     const double left = out_of_focus.energy / in_focus.energy;
@@ -257,7 +258,7 @@ double faded_deviation(double planned, double defocus, const Texture& in_focus, 
     return std::clamp(found, least * planned, most * planned);
 }
 
-// Relative variance of a pixel by the rays of an image.
+// The relative variance of a pixel by the rays of an image.
 double variance_by_rays(const Configuration& configuration, const specimen::Specimen& specimen,
                         const std::optional<Sample>& sample, double variance_of_sample, Expectation& expected) {
     if (configuration.trace.estimator == trace::Estimator::backward && sample) {
@@ -291,7 +292,7 @@ double variance_by_rays(const Configuration& configuration, const specimen::Spec
     return noise * noise / more;
 }
 
-// The camera's variance over the mean, of the sample's light.
+// The relative variance of a pixel by the camera, in the sample's light.
 double variance_by_camera(const Configuration& configuration, const Sample& sample, Expectation& expected) {
     const camera::Camera camera(configuration.camera.value(), configuration.instrument.spectrum);
     const auto& options = camera.options();
@@ -309,7 +310,7 @@ struct CurveShape {
     double smoothing = 0; // s, steps
 };
 
-// The variance of a height in steps squared, and A / sqrt(rho(0) N).
+// Sets the noise of a height and A / sqrt(rho(0) N) of the header. step: mm.
 void expect_height_noise(const CurveShape& curve, double texture_energy, double variance, const NoiseOfMeasure& noise,
                          double step, Expectation& expected) {
     const double width_square = curve.width * curve.width + 2 * curve.smoothing * curve.smoothing;
@@ -323,7 +324,7 @@ void expect_height_noise(const CurveShape& curve, double texture_energy, double 
     const auto a = [&](int k) {
         return std::abs(k) <= radius ? weights[static_cast<std::size_t>(std::abs(k))] / total : 0.0;
     };
-    std::vector<double> rho; // by the distance
+    std::vector<double> rho; // by distance
     for (int d = 0; d <= 2 * radius + 2 * (radius + 1); ++d) {
         double sum = 0;
         for (int k = -radius; k <= radius; ++k) {
@@ -346,8 +347,8 @@ void expect_height_noise(const CurveShape& curve, double texture_energy, double 
         step * std::sqrt(variance * noise.gain_square * width_square * width_square / top_square * slope);
 }
 
-// Deviation of the surface within the windows from what a window's mean follows, mm; that of a normal distribution with
-// the same median, so that steps do not count.
+// The standard deviation (mm) of the surface within a window from the window's mean. It is that of a normal
+// distribution with the same median, so that steps do not count.
 double relief_in_windows(const surface::HeightMap& heights, double window) {
     constexpr double deviations_a_median = 1.4826;
     const auto smooth = surface::gaussian_low_pass(heights, 2 * window);
@@ -402,7 +403,7 @@ Expectation expect(const Configuration& configuration, const optics::Instrument&
     double variance = variance_by_rays(configuration, specimen, sample, variance_of_sample, expected);
     const auto of_light = noise_of(options, configuration, instrument, true);
     const auto noise = configuration.camera ? noise_of(options, configuration, instrument, false) : of_light;
-    // Waves spread each path's light over the Airy pattern, which leaves less noise of it in a pixel.
+    // Waves spread the light of each path over the Airy pattern, which lowers the noise of a pixel.
     variance *= of_light.kept;
     expected.ray_noise = std::sqrt(variance);
     if (!sample || !(expected.light_per_pixel > 0)) {
@@ -505,7 +506,7 @@ std::vector<Warning> warnings_of(const Configuration& configuration, const Expec
                         "which no instrument has.",
                         100 * by_rays, expected.height_noise * um_per_mm, 100 * height_share)));
     }
-    // Texture that is configured is there, even if the sample's noise hides it.
+    // Configured texture exists, even if the sample's noise hides it.
     const bool textured =
         configuration.specimen->roughness || configuration.specimen->reflectance || configuration.light_field;
     if (textured) {

@@ -54,7 +54,7 @@ void warn_of_depth(const Plan& plan, std::vector<Warning>& warnings) {
 
 void warn_of_step(const Plan& plan, std::vector<Warning>& warnings) {
     const double coarsest = 0.5 * plan.first_order.depth_of_field;
-    // Its own rounding does not count.
+    // The tolerance keeps rounding of the step from counting.
     if (plan.positions.size() > 1 && plan.z_step() > coarsest * (1 + 1e-9)) {
         warnings.push_back(
             {.code = "coarse-steps",
@@ -84,7 +84,8 @@ void warn_of_range(const Plan& plan, std::vector<Warning>& warnings) {
                              "beyond the scan.",
                              lowest * um_per_mm, highest * um_per_mm);
     const char* const code = beyond ? "scan-misses-specimen" : "scan-misses-curved-field";
-    // A point at the very end has no maximum of focus: half a depth of field more.
+    // A point at the end of the scan has no maximum of focus there, so the scan must reach half a depth of focus beyond
+    // it.
     if (lowest < plan.first()) {
         warnings.push_back({.code = code,
                             .key = "scan.z_start_um",
@@ -145,7 +146,7 @@ void warn_of_memory(const Plan& plan, const optics::Instrument& instrument, std:
         return;
     }
     const ImageSize pixels = plan.configuration.instrument.detector_pixels;
-    constexpr double most = 9e18; // bytes that the text can say
+    constexpr double most = 9e18; // bytes, the largest number that the text can hold
     warnings.push_back({.code = "memory",
                         .key = "detector.pixels",
                         .value = text_of(pixels),

@@ -10,10 +10,10 @@
 
 namespace vkfv::measurement {
 
-// The warnings of a stack's scan and evaluation: a scan inside the depth of field, one with coarse steps, one that does
-// not hold the specimen or its curved image; a window as wide as the image; an average along z at its end; images and
-// their evaluation that this machine's memory does not hold. The instrument is that of the configuration, relief what
-// its detector sees. None without [scan].
+// The warnings of a stack's scan and evaluation: a scan inside the depth of field, a scan with coarse steps, a scan
+// that does not hold the specimen or its curved image; a window as wide as the image; an average along z at its end;
+// images or an evaluation that exceed this machine's memory. The instrument is the configuration's, `relief` the part
+// of the specimen that its detector sees. There are no warnings without [scan].
 std::vector<Warning> plan_warnings(const Configuration& configuration, const optics::Instrument& instrument,
                                    const Relief& relief);
 
@@ -21,8 +21,8 @@ std::vector<Warning> plan_warnings(const Configuration& configuration, const opt
 // object, whichever is larger.
 double depth_of_focus(const optics::FirstOrder& first_order);
 
-// Bytes of memory that the evaluation of the configuration's stack takes at most, where it is done
-// (StackEvaluator, topography.hpp).
+// The most memory, in bytes, that the evaluation of the configuration's stack takes where it is done (StackEvaluator,
+// topography.hpp).
 double evaluation_bytes(const Configuration& configuration, const optics::Instrument& instrument);
 
 } // namespace vkfv::measurement

@@ -14,10 +14,10 @@ namespace vkfv::measurement {
 
 namespace {
 
-constexpr double least_light = 0.01; // of the most that a facet sends
+constexpr double least_light = 0.01; // share of the most light that a facet sends
 constexpr double slope_step = 5;     // degrees
 
-// Share of the paths that a facet of this tilt sends into the aperture.
+// The share of the paths that a facet of this tilt (rad) sends into the aperture.
 double light_of_facet(const specimen::Material& material, const optics::InstrumentDescription& description,
                       const optics::Instrument& instrument, double aperture_sine, double tilt) {
     constexpr std::uint32_t paths = 4096, seed = 1, source_stream = 0, scatter_stream = 1;
@@ -61,7 +61,7 @@ double steepest_seen(const Configuration& configuration, const optics::Instrumen
         --last;
     }
     if (last == 0) {
-        return Expectation::unknown; // no path was seen at all
+        return Expectation::unknown; // no facet sends light back
     }
     return std::min(90.0, static_cast<double>(last) * slope_step) * radians_per_degree;
 }
@@ -74,7 +74,7 @@ void expect_slopes(const Configuration& configuration, const optics::Instrument&
     const ImageSize pixels = configuration.instrument.detector_pixels;
     const double pitch = instrument.first_order.pixel_pitch;
     const int columns = std::min(pixels.columns, most_points), rows = std::min(pixels.rows, most_points);
-    // Parts of a large field stand for it, since slopes ask for neighbouring pixels.
+    // The middle part of a large field stands for it, since slopes need neighbouring pixels.
     const auto grid = PixelGrid::centred(columns, rows, pitch);
     const auto truth = specimen::truth(specimen, columns, rows, grid.x0, grid.y0, pitch, pitch);
     const auto positions = configuration.scan->positions();

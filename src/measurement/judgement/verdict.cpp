@@ -12,13 +12,13 @@ namespace vkfv::measurement {
 
 namespace {
 
-// Codes of warnings that leave no heights, and of those that leave some out or make them doubtful.
+// Codes of warnings after which no heights are measured, and of those after which some are missing or doubtful.
 constexpr std::array leave_none = {"specimen-not-seen", "scan-in-depth-of-field", "few-rays", "no-texture",
                                    "wide-window",       "objective-turned-round", "no-light", "memory"};
 constexpr std::array leave_some = {"scan-misses-specimen", "scan-misses-curved-field", "sparse-field",
                                    "ring-in-objective",    "waves-do-not-hold",        "relief-of-phase",
                                    "coarse-steps"};
-// The least ratio of texture to noise: below it most points are left out as no better than chance.
+// The least ratio of texture to noise. Below it, most points are left out because they are no better than chance.
 constexpr double least_over_noise = 1;
 
 template <std::size_t Count>
@@ -33,7 +33,7 @@ std::string text_in_um(double mm) {
     return fmt::format("{:.2g} um", mm * um_per_mm);
 }
 
-// The shares from 1 % on.
+// The shares by slope that are at least half a percent.
 std::string slopes_text(const Expectation& expected) {
     std::string text;
     double from = 0;
@@ -48,7 +48,7 @@ std::string slopes_text(const Expectation& expected) {
     return text;
 }
 
-// Names the largest part of the uncertainty, or of the noise.
+// A sentence that names the largest part of the uncertainty, or of the noise.
 std::string limit_text(const Configuration& configuration, const Expectation& expected) {
     const double noise = expected.height_noise, whole = expected.height_uncertainty;
     if (noise > std::sqrt(0.5) * whole) {
@@ -70,14 +70,14 @@ Verdict verdict_on(const Configuration& configuration, const optics::Instrument&
     const auto& first_order = instrument.first_order;
     const Warning* none = first_of(warnings, leave_none);
     const Warning* some = first_of(warnings, leave_some);
-    // A sample sees the middle alone. Edges elsewhere are in focus somewhere, even of a specimen without texture.
-    constexpr double all_alike = 0.99; // of the points, in one range of slopes
+    // The sample shows the middle alone. Edges elsewhere are in focus somewhere, even on a specimen without texture.
+    constexpr double all_alike = 0.99; // share of the points in one range of slopes
     if (none != nullptr && none->code == "no-texture" && expected &&
         *std::ranges::max_element(expected->slope_shares) < all_alike) {
         some = none;
         none = nullptr;
     }
-    // A specimen without texture is seen by its edges alone, and the sample need not have met one.
+    // The instrument sees a specimen without texture by its edges alone, and the sample need not have an edge.
     const bool edges_alone = some != nullptr && some->code == "no-texture";
     const bool in_noise =
         expected && none == nullptr && !edges_alone && expected->texture_over_noise < least_over_noise;
@@ -168,7 +168,7 @@ std::string verdict_text(const std::string& file, const Verdict& verdict) {
 std::string warnings_text(const std::vector<Warning>& warnings) {
     std::string text;
     for (const Warning& warning : warnings) {
-        text += "  warning: " + warning.sentence + "\n"; // in one line, which a search finds whole
+        text += "  warning: " + warning.sentence + "\n"; // in one line, so that a search finds all of it
         if (const std::string remedy = remedy_text(warning); !remedy.empty()) {
             text += wrapped(remedy, 4);
         }

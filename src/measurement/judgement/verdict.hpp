@@ -14,16 +14,16 @@
 namespace vkfv::measurement {
 
 // The verdict on a stack. Without [scan] or [specimen] there is no expectation, and the verdict says what is missing. A
-// stack cannot be measured where a warning says so that leaves no heights, or where no texture stands out of the noise;
-// partly where such a warning takes some of the points.
+// stack cannot be measured where a warning says that no heights are left, or where no texture stands out of the noise.
+// It can partly be measured where a warning says that some heights are left out.
 Verdict verdict_on(const Configuration& configuration, const optics::Instrument& instrument,
                    const std::optional<Expectation>& expected, const std::vector<Warning>& warnings);
 
-// At most 110 columns wide; lines after the first begin with so many spaces.
+// Text in lines of at most 110 columns. Lines after the first begin with this number of spaces.
 std::string wrapped(std::string_view text, std::size_t indentation);
 
-// The text for a terminal: the answer, its sentences, and every warning with its key below it. file: name of the
-// configuration.
+// Texts for a terminal: the answer with its sentences, and every warning with its key below it. file: the
+// configuration's name.
 std::string verdict_text(const std::string& file, const Verdict& verdict);
 std::string warnings_text(const std::vector<Warning>& warnings);
 

@@ -22,14 +22,14 @@ optics::Instrument assemble_at_its_place(const Configuration& configuration,
                                          optics::InstrumentDescription description) {
     description.light_field = make_light_field(configuration);
     optics::Instrument instrument;
-    // The optics know keys, the configuration knows where they stand.
+    // The optics' errors have keys, and the configuration knows the places of its keys.
     at_its_place(configuration, {.file = configuration.file}, [&] { instrument = optics::assemble(description); });
     return instrument;
 }
 
-// Height over the focus, mm, at which waves of four pixels have half the contrast that they have in focus: the half
+// The height over the focus, mm, at which waves of four pixels have half the contrast that they have in focus: half the
 // width of focus curves. A disc of light of radius r passes half the contrast of frequency f where 2 pi f r = 2.215.
-// wavelength: mm; none: as rays have it.
+// wavelength: mm; without one, the image is that of rays.
 double defocus_of_half_contrast(const optics::FirstOrder& first_order, std::optional<double> wavelength) {
     constexpr double half_contrast = 2.215, waves_a_pixel = 0.25, greatest_sine = 0.99;
     const double frequency = waves_a_pixel / first_order.pixel_pitch;
@@ -38,10 +38,11 @@ double defocus_of_half_contrast(const optics::FirstOrder& first_order, std::opti
     if (!wavelength) {
         return half_contrast / (2 * pi * frequency) * cosine / sine;
     }
-    // Waves interfere where the pupil overlaps with itself displaced, which is narrower by the share s that the
-    // frequency is of the cutoff: the height is 1 / (1 - s) larger, and least at half the cutoff; finer waves, which
-    // have little contrast, fade no sooner. The phase of defocus, n z (1 - cos), has the mean slope 2 tan(angle / 2)
-    // over the pupil, less than its rim's. Within 6 % of Debye's integral at apertures of 0.28 and 0.66.
+    // Waves interfere where the pupil overlaps with itself displaced, which is narrower by the share s of the frequency
+    // in the cutoff, so that the height is 1 / (1 - s) larger. This height is least at half the cutoff; finer waves,
+    // which have little contrast, fade no sooner. The phase of defocus, n z (1 - cos), has the mean slope 2 tan(angle /
+    // 2) over the pupil, less than at its rim. The result is within 6 % of Debye's integral at apertures of 0.28 and
+    // 0.66.
     const double cutoff = 2 * first_order.numerical_aperture / *wavelength;
     const double seen = std::min(frequency, cutoff / 2);
     return half_contrast / (2 * pi * seen) * (1 + cosine) / (2 * sine) / (1 - seen / cutoff);

@@ -14,14 +14,14 @@ namespace vkfv::measurement {
 
 namespace {
 
-constexpr std::uint64_t bytes_around_pixels = 4096; // of an image: its description and the rest of a block
+constexpr std::uint64_t bytes_around_pixels = 4096; // of an image file: its description and the rest of a disk block
 constexpr std::uint64_t bytes_a_point = 54;         // nine maps in float32, the mask, and two surfaces
-constexpr std::uint64_t report_bytes = 6'000'000;   // without what follows
+constexpr std::uint64_t report_bytes = 6'000'000;   // of the page without frames and curves
 constexpr std::uint64_t most_frame_bytes = 8'000'000;
-constexpr std::uint64_t curve_bytes = std::uint64_t{64} * 64 * 6; // an image: of curves.npy, and in the report
+constexpr std::uint64_t curve_bytes = std::uint64_t{64} * 64 * 6; // for each image, in curves.npy and in the report
 constexpr std::uint64_t most_curve_values = 2048;
 
-// The page, its curves and curves.npy.
+// The bytes of the report's page, with its frames and curves, and of curves.npy.
 std::uint64_t page_bytes(const Configuration& configuration) {
     const std::uint64_t images = configuration.scan ? configuration.scan->positions().size() : 0;
     return report_bytes +
@@ -53,7 +53,7 @@ std::uint64_t free_bytes(const std::filesystem::path& folder) {
         there = there.parent_path();
     }
     const auto space = std::filesystem::space(there, error);
-    // A file system that does not tell: writing will.
+    // A file system that does not tell its free space is taken as large enough; writing will show.
     return error ? std::numeric_limits<std::uint64_t>::max() : space.available;
 }
 

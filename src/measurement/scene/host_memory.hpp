@@ -12,15 +12,15 @@
 
 namespace vkfv::measurement {
 
-// Physical memory, bytes.
+// The physical memory of this machine, bytes.
 inline std::uint64_t memory_of_host() {
     return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// detector.pixels of the same form that take less than `there`, where so many take `memory` in proportion to their
-// number.
+// The largest detector.pixels of the same form that fit into `there` bytes, if `pixels` take `memory` bytes and memory
+// is in proportion to their number.
 inline std::string pixels_that_fit(ImageSize pixels, std::uint64_t memory, std::uint64_t there) {
-    constexpr double margin = 0.9; // of a length: what does not grow with the pixels
+    constexpr double margin = 0.9; // share of a side, for memory that does not grow with the pixels
     const double share = margin * std::sqrt(static_cast<double>(there) / static_cast<double>(memory));
     return text_of(ImageSize{.columns = std::max(1, static_cast<int>(share * pixels.columns)),
                              .rows = std::max(1, static_cast<int>(share * pixels.rows))});

@@ -13,7 +13,7 @@ namespace vkfv::measurement {
 
 namespace {
 
-// The specimen's displacement by its stage over the height of the focal plane, mm.
+// The sideways displacement of the specimen by its stage as a function of the height of the focal plane, mm.
 class WayAside {
   public:
     explicit WayAside(const Configuration& configuration) {
@@ -32,7 +32,7 @@ class WayAside {
 
     bool moves() const { return moves_; }
 
-    // Linear between images, as at the first and the last beyond them.
+    // The displacement is linear between images; below the first and above the last it is theirs.
     glm::dvec2 at(double height) const {
         const auto above = std::ranges::lower_bound(points_, height, {}, &Point::height);
         if (above == points_.begin()) {
@@ -72,12 +72,12 @@ class PixelTruth {
         });
     }
 
-    // With the specimen's displacement by the stage, in the mean over the pixels. The height tells when a pixel is in
-    // focus, and so where the specimen stands then, which tells the height: by repetition, which converges where the
-    // specimen rises by less than the stage does while it moves by as much sideways.
+    // The heights, with the specimen's mean displacement by the stage over the pixels. The height of a pixel tells when
+    // it is in focus and so where the specimen stands then, which in turn tells the height. Repetition solves this; it
+    // converges where the specimen rises by less than the stage does while it moves by as much sideways.
     surface::HeightMap along(const WayAside& way, glm::dvec2& mean_aside) const {
         constexpr int most_repetitions = 6;
-        constexpr double enough = 0.005; // of a pitch
+        constexpr double enough = 0.005; // share of a pitch
         constexpr double most_unsettled_share = 1e-3;
         auto heights = displaced([&](int, int) { return way.at(0); });
         Grid<glm::dvec2> aside(nominal_.columns, nominal_.rows, way.at(0));

@@ -1,4 +1,4 @@
-// The true surface where the pixels look.
+// The true surface at the places that the pixels see.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -12,24 +12,24 @@
 
 namespace vkfv::measurement {
 
-// Both maps stand on the regular grid that measured heights are told on: the nominal pitch, its middle where the middle
-// of the detector looks, in the specimen's frame.
+// Both maps stand on the regular grid of the measured heights: it has the nominal pitch, and its middle is where the
+// middle of the detector looks, in the specimen's frame.
 struct KnownTruth {
-    surface::HeightMap heights; // of each pixel where it looks
-    // At the grid's own points, which no mapping has distorted: what the true dimensions of a standard are found on.
-    // None of other specimens.
+    surface::HeightMap heights; // at the place that each pixel really sees
+    // Heights at the points of the grid itself, without the mapping's distortion. The true dimensions of a standard are
+    // found on this map; other specimens have none.
     std::optional<surface::HeightMap> undistorted;
-    // How far the pixels look from the grid before its middle was moved. The shift holds the mean displacement of the
-    // specimen by its stage while the pixels are in focus.
+    // The distance from the grid, before its middle was moved, to the places that the pixels see. The shift includes
+    // the mean displacement of the specimen by its stage while the pixels are in focus.
     optics::MappingDeviation mapping;
 };
 
-// The regular grid of an image of the configuration at this focal height (mm): as that of KnownTruth, but with the
-// stage where it is at this image.
+// The regular grid of an image of the configuration at this focal height (mm). It is the grid of KnownTruth, but with
+// the stage where it is at this image.
 PixelGrid grid_of_image(const optics::Instrument& instrument, const Configuration& configuration, double focal_height);
 
 // The truth that the configuration's stack is compared with. Where a stage moves the specimen sideways, a pixel's place
-// is the one that the pixel sees at the moment when it is in focus.
+// is the one that it sees when it is in focus.
 KnownTruth truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                            const specimen::Specimen& specimen);
 

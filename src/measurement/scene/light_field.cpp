@@ -9,7 +9,7 @@ namespace vkfv::measurement {
 
 namespace {
 
-constexpr int noise_points = 1024; // of a side; beyond them noise goes on mirrored
+constexpr int noise_points = 1024; // of a side; beyond them the noise is mirrored
 const std::string of_specimen = "specimen.reflectance", of_light = "illumination.field";
 
 specimen::ReflectanceMap made_pattern(const specimen::Reflectance& pattern) {

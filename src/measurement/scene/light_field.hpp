@@ -1,4 +1,4 @@
-// The light's field of a configuration, as the instrument takes it.
+// The light's field of a configuration, in the form that the instrument takes.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -8,7 +8,8 @@
 
 namespace vkfv::measurement {
 
-// None where the configuration has none. Throws InputError (keys of [illumination.field]) as make_reflectance_map does.
+// The configured field of the light; none where the configuration has none. Throws InputError as make_reflectance_map()
+// does, with keys of [illumination.field].
 std::optional<optics::LightField> make_light_field(const Configuration& configuration);
 
 } // namespace vkfv::measurement

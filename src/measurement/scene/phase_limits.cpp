@@ -18,15 +18,15 @@ namespace vkfv::measurement {
 
 namespace {
 
-// The error of contrast above which the light counts as too narrow: that of a mirror lit with 0.8 of the aperture,
-// which passes frequencies up to 1.8 NA / lambda, where a filled pupil's contrast is 0.04.
+// The error of contrast above which the light counts as too narrow. A mirror lit with 0.8 of the aperture has this
+// error: it passes frequencies up to 1.8 NA / lambda, where a filled pupil's contrast is 0.04.
 constexpr double most_contrast_error = 0.2;
-constexpr double mirror_like = 0.25; // scatter_fill of surfaces that change the phase of the light alone
+constexpr double mirror_like = 0.25; // scatter_fill below which a surface changes the phase of light alone
 
 constexpr double resolutions_of_texture = 10;
-constexpr int most_points = 256;               // a side of the part of the field whose texture is looked at
+constexpr int most_points = 256;               // on a side of the part of the field whose texture is measured
 constexpr double deviations_a_median = 1.4826; // of a normal distribution
-constexpr double flat = 1e-9;                  // mm: rounding of heights that are meant to be equal
+constexpr double flat = 1e-9;                  // mm, rounding of heights that are meant to be equal
 
 double median_of(std::vector<double> values) {
     if (values.empty()) {
@@ -37,11 +37,11 @@ double median_of(std::vector<double> values) {
     return *middle;
 }
 
-// incoming: unit, from the middle of the source, or from the middle of a ring's band.
+// incoming: unit vector from the middle of the source, or from the middle of a ring's band.
 double scatter_fill_of(const specimen::Material& material, glm::dvec3 incoming, double aperture_sine) {
     constexpr std::uint32_t paths = 8192, most_paths = 262144;
-    // An aperture of 0.05 takes 650 of the most paths from a Lambertian surface, and the median is good to 2 %. Where
-    // fewer of them enter, light comes in by the specimen's slopes and not by its lobes.
+    // An aperture of 0.05 receives 650 of most_paths from a Lambertian surface, and the median is then good to 2 %.
+    // Where fewer than `fewest` enter, light comes in by the specimen's slopes and not by its lobes.
     constexpr std::size_t enough = 400, fewest = 30;
     constexpr std::uint32_t seed = 1, blocks_of_emission = 1;
     const auto record = specimen::material_record(material);
@@ -59,7 +59,7 @@ double scatter_fill_of(const specimen::Material& material, glm::dvec3 incoming, 
     return sines.size() < fewest ? 0 : std::min(1.0, median_of(std::move(sines)) / of_filled);
 }
 
-// The one with the most flux of the description's sources, and the instrument as it stands for it.
+// The source of the description with the most flux, and the instrument with this source.
 struct StrongestLight {
     const optics::SourceDescription* source;
     const optics::Instrument* instrument;

@@ -1,7 +1,8 @@
-// Where images of waves hold. vkfv adds the waves of different paths without their phases. This is right where light
-// from each point of the specimen fills the objective's pupil: the source fills it, or the specimen scatters widely. It
-// is wrong where a mirror-like specimen is lit by a narrow cone, since finer waves then have contrast than pass, and
-// where its relief is so low that it changes the light's phase alone (docs/waves.md).
+// The limits within which images of waves hold. vkfv adds the waves of different paths without their phases. This is
+// right where light from each point of the specimen fills the objective's pupil, because the source fills it or the
+// specimen scatters widely. It is wrong where a mirror-like specimen is lit by a narrow cone, since waves too fine to
+// pass then have contrast, and where the specimen's relief is so low that it changes the light's phase alone
+// (docs/waves.md).
 #pragma once
 
 #include "core/messages/warning.hpp"
@@ -16,38 +17,38 @@
 namespace vkfv::measurement {
 
 struct PhaseLimits {
-    // The largest error of contrast, since light does not fill the pupil evenly (contrast_error_of()).
+    // The largest error of contrast because light does not fill the pupil evenly (contrast_error_of()).
     double contrast_error = 0;
-    // Half of the light from the middle of the source (of a ring: from its band) that a level specimen scatters into
-    // the objective's aperture lies within a sine; this is that sine over the one of a pupil filled evenly, at most 1:
-    // 0 of a mirror, 1 of a Lambertian surface.
+    // The spread of light over the pupil by scatter. Half of the light from the middle of the source (of a ring: from
+    // its band) that a level specimen scatters into the objective's aperture lies within a sine; this member is that
+    // sine over the one of an evenly filled pupil, at most 1: 0 for a mirror, 1 for a Lambertian surface.
     double scatter_fill = 1;
     // Radius of the source's image over that of the objective's pupil, at most 1; 0: the light is that of a ring.
     double source_fill = 1;
-    // Standard deviation (mm) of the heights on the pixels from those that a Gaussian filter of ten times the limit of
-    // resolution leaves; that of a normal distribution with the same median where this is less, so that steps do not
+    // Standard deviation (mm) of the heights on the pixels from their mean by a Gaussian filter of ten times the limit
+    // of resolution; or, if this is less, that of a normal distribution with the same median, so that steps do not
     // count.
     double texture = 0;
-    // Radius of the source that fills the pupil, and that it has, mm; 0: the light is that of a ring.
+    // Radius that the source needs to fill the pupil, and the radius that it has, mm; 0: the light is that of a ring.
     double filling_radius = 0, source_radius = 0;
-    double phase_height = 0;   // lambda / (4 pi n): relief that puts a reflected wave a radian off, mm
+    double phase_height = 0;   // lambda / (4 pi n), mm: relief that shifts a reflected wave by a radian
     double depth_of_field = 0; // mm
 
     bool fills_pupil() const;
     bool is_relief_of_phase() const;
-    // Standard uncertainty (mm) of every height, which the images do not show: a depth of field where they do not hold,
-    // else 0.
+    // Standard uncertainty (mm) of every height that the images do not show: a depth of field where images of waves do
+    // not hold, otherwise 0.
     double height_uncertainty() const;
 };
 
-// The limits of the light with the most flux. The instrument is assembled from the description.
+// The limits for the source with the most flux. The instrument must be assembled from the description.
 PhaseLimits phase_limits(const optics::InstrumentDescription& description, const optics::Instrument& instrument,
                          const specimen::Specimen& specimen);
 
-// A sentence for each condition that is not met.
+// A warning for each condition that is not met.
 std::vector<Warning> warnings_of(const PhaseLimits& limits);
 
-// The keys of assets/schemas without their unit, in mm.
+// JSON with the keys of assets/schemas without their unit, in mm.
 nlohmann::ordered_json json_of(const PhaseLimits& limits);
 
 } // namespace vkfv::measurement

@@ -18,15 +18,15 @@ namespace vkfv::measurement {
 namespace {
 
 constexpr std::uint32_t scattered_paths = 65536;
-constexpr std::uint32_t source_points = 1024; // of lobes that are integrated
+constexpr std::uint32_t source_points = 1024; // for lobes that are integrated
 constexpr std::uint32_t seed = 1;
-constexpr std::uint32_t source_stream = 0, scatter_stream = 1; // in place of the image's number
+constexpr std::uint32_t source_stream = 0, scatter_stream = 1; // stand for the number of an image
 
-// Less light than this, over what a Lambertian surface sends into the pupil, comes in by the specimen's slopes and not
-// by its lobes.
+// The least light, over what a Lambertian surface sends into the pupil. Less than this comes in by the specimen's
+// slopes and not by its lobes.
 constexpr double least_over_lambertian = 0.01;
 
-// A pupil's coordinate, in radii, of the middle of a cell.
+// The coordinate of a cell's middle in the pupil, in radii of the pupil.
 double middle_of(int cell) {
     return (2 * cell + 1.0) / pupil_light_cells - 1;
 }
@@ -36,7 +36,8 @@ bool is_in_pupil(int column, int row) {
            std::hypot(middle_of(column), middle_of(row)) <= 1;
 }
 
-// Directions in which the source's light falls on the middle of the field: unit, z up, towards the specimen.
+// Directions in which the source's light falls on the middle of the field: unit vectors towards the specimen, with z
+// up.
 class Illumination {
   public:
     Illumination(const optics::InstrumentDescription& description, const optics::SourceDescription& source,
@@ -52,7 +53,7 @@ class Illumination {
         stop_ = std::min(1.0, scale * description.illumination_aperture_radius.value_or(filling / aperture_sine));
     }
 
-    // None where the aperture diaphragm keeps the light off.
+    // There is no direction where the aperture diaphragm stops the light.
     std::optional<glm::dvec3> direction(std::uint32_t path) const {
         const auto random = physics::f64::draw(seed, source_stream, {path, 0}, 0);
         if (is_ring_) {
@@ -76,11 +77,11 @@ class Illumination {
     physics::f64::RingLight ring_;
     bool is_ring_;
     bool is_disc_ = true;
-    glm::dvec2 half_{0, 0}; // sines: of the disc's radius, or of half the rectangle's sides
+    glm::dvec2 half_{0, 0}; // sines of the disc's radius, or of half the rectangle's sides
     double stop_ = 1;
 };
 
-// Each cell's share of the light of the source, by paths that the lobe scatters.
+// Each cell's share of the source's light, by paths that the lobe scatters.
 PupilLight scattered_light(const Illumination& illumination, const specimen::Material& lobe, double aperture_sine) {
     const auto record = specimen::material_record(lobe);
     const MaterialScene scene(lobe);
@@ -103,7 +104,8 @@ PupilLight scattered_light(const Illumination& illumination, const specimen::Mat
     return light;
 }
 
-// The same by the lobe's density at the middle of each cell. Mirror lobes have none.
+// Each cell's share of the source's light, by the lobe's density at the middle of the cell. Mirror lobes have no
+// density.
 PupilLight integrated_light(const Illumination& illumination, const specimen::Material& lobe, double aperture_sine) {
     const auto record = specimen::material_record(lobe);
     const MaterialScene scene(lobe);
@@ -116,7 +118,8 @@ PupilLight integrated_light(const Illumination& illumination, const specimen::Ma
                 if (is_in_pupil(column, row)) {
                     const glm::dvec2 sine = aperture_sine * glm::dvec2(middle_of(column), middle_of(row));
                     const glm::dvec3 outgoing(sine, std::sqrt(1 - glm::dot(sine, sine)));
-                    // The solid angle is the area of direction cosines over the cosine, which the density has already.
+                    // The solid angle is the area of direction cosines over the cosine, and the density has the cosine
+                    // already.
                     light(column, row) += physics::f64::scatter_bsdf(scene, record, *incoming, {0, 0, 1}, outgoing) *
                                           side * side / source_points;
                 }
@@ -134,7 +137,7 @@ double sum_of(const PupilLight& light) {
 
 PupilLight pupil_light(const optics::InstrumentDescription& description, const optics::SourceDescription& source,
                        const optics::Instrument& instrument, const specimen::Material& material, double aperture_sine) {
-    // A lobe of which the pupil takes this share is sharp enough to be drawn by paths.
+    // A lobe that sends this share of its light into the pupil is sharp enough to be sampled by paths.
     constexpr double sharp = 0.25;
     const Illumination illumination(description, source, instrument, aperture_sine);
     PupilLight light(pupil_light_cells, pupil_light_cells);

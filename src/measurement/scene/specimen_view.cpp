@@ -17,9 +17,10 @@ namespace {
 
 using Status = trace::Ledger::Status;
 
-constexpr int most_relief_points = 128; // a side; a look at the specimen, in a moment for any detector
+constexpr int most_relief_points = 128; // on a side, so that it takes a moment for any detector
 constexpr double least_seen_share = 0.5;
-// Illumination is wider than most specimens; beside a specimen that is where it should be, this much never falls.
+// The share of light beside the specimen above which vkfv warns. Illumination is wider than most specimens, but beside
+// a specimen in its place this much of it never falls.
 constexpr double most_light_beside = 0.98;
 
 constexpr const char* likely_causes =
@@ -102,10 +103,10 @@ std::vector<Warning> warning_of_no_light(const Configuration& configuration, con
              .sentence = fmt::format("No ray of {} arrived at the detector{}.{} {}; or launch more rays.", rays, bound,
                                      where, likely_causes)}};
     };
-    if (configuration.trace.estimator == trace::Estimator::backward) { // whose paths are no shares of the flux
+    if (configuration.trace.estimator == trace::Estimator::backward) { // backward paths carry no shares of the flux
         return of_rays("");
     }
-    double launched = 0; // W, of which every ray carries the same part
+    double launched = 0; // W, carried by all rays in equal parts
     for (const auto* light : instrument.lights()) {
         launched +=
             light->flux * light->aimed_share() *
@@ -123,7 +124,7 @@ std::vector<Warning> warning_of_lost_light(const Configuration& configuration, c
     const double detected = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
     if (!(detected > 0)) {
         const auto most = std::ranges::max_element(ledger.entries, {}, [](const auto& entry) {
-            return entry.status == Status::not_aimed_at ? 0.0 : entry.power; // what cannot pass at all
+            return entry.status == Status::not_aimed_at ? 0.0 : entry.power; // light that cannot pass is not aimed
         });
         const std::string where = most == ledger.entries.end() || !(most->power > 0)
                                       ? ""

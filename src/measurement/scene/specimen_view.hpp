@@ -1,4 +1,4 @@
-// What of the specimen the detector sees, and what is likely wrong where that is little.
+// The part of the specimen that the detector sees, and warnings where it is small or sends little light.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -20,21 +20,22 @@ struct Relief {
     double seen_share = 0;
 };
 
-// pixels: of the detector, whose middle sees the axis; pitch: of the pixels in the object plane, mm.
+// pixels: of the detector, whose middle sees the axis. pitch: of the pixels in the object plane, mm.
 Relief relief_of(const specimen::Specimen& specimen, ImageSize pixels, double pitch);
 
-// A sentence where the specimen fills less than half of the field.
+// A warning where the specimen fills less than half of the field.
 std::vector<Warning> warning_of_sparse_field(const specimen::Specimen& specimen, const Relief& relief);
 
-// A sentence where no light was detected, or less than the numbers of an image hold, or where nearly all that came as
-// far fell beside the specimen: where it went, and what that may come from.
+// A warning where no light was detected, or less than the numbers of an image can hold, or where nearly all light that
+// came as far fell beside the specimen. It says where the light went and what may have caused that.
 std::vector<Warning> warning_of_lost_light(const Configuration& configuration, const optics::Instrument& instrument,
                                            const trace::Image& image);
 
-// The warning of images in which none of so many rays was detected. Either no light can arrive, which the configuration
-// proves, or the sentence says what share of it may: with p the share of the rays that arrive, none of N does with a
-// probability (1 - p)^N, which is 5 % at the bound (Clopper and Pearson, Biometrika 26, 404 (1934), one-sided).
-// Backward paths carry no shares of the flux, and have no bound. where: a sentence with a space before it, or nothing.
+// A warning for images in which none of this number of rays was detected. If the configuration proves that no light can
+// arrive, it says so; otherwise it says what share of the light may arrive. With p the share of the rays that arrive,
+// none of N rays does with a probability (1 - p)^N, which is 5 % at the bound (Clopper and Pearson, Biometrika 26, 404
+// (1934), one-sided). Backward paths carry no shares of the flux, and have no bound. where: a sentence with a space
+// before it, or nothing.
 std::vector<Warning> warning_of_no_light(const Configuration& configuration, const optics::Instrument& instrument,
                                          std::uint64_t rays, const std::string& where = {});
 

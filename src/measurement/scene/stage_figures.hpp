@@ -1,4 +1,4 @@
-// A stage's errors in a stack's positions, for its results.
+// The errors of a stage in the positions of a stack, for the stack's results.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -10,18 +10,19 @@
 
 namespace vkfv::measurement {
 
-// What the scale reads of an image of the configuration's stack, where heights are told by that, mm; none: they are by
-// the nominal positions.
+// The scale's reading (mm) at an image of the configuration's stack, if heights are evaluated by readings; without one
+// they are evaluated by nominal positions.
 std::optional<double> reading_of(const Configuration& configuration, double position, int image);
 
-// Over the images of a stack with a stage, mm: of the focal planes from the nominal positions, and of the specimen at
-// right angles to the axis.
+// Errors over the images of a stack with a stage, mm: of the focal planes from their nominal positions, and the largest
+// displacement of the specimen at right angles to the axis.
 struct StageErrors {
     double rms = 0, largest = 0, largest_aside = 0;
 };
 StageErrors stage_errors(const Configuration& configuration);
 
-// Of a stack with a stage: for results.json, and its file beside the heights, a line an image.
+// The results of a stack with a stage: members of results.json, and a CSV file beside the heights with a line for each
+// image.
 inline constexpr const char* stage_file = "stage.csv";
 nlohmann::ordered_json stage_figures(const Configuration& configuration);
 std::string stage_table(const Configuration& configuration);

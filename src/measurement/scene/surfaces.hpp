@@ -1,4 +1,4 @@
-// The surface of the specimen, kept for the next configuration of the same process that has the same one.
+// The surface of the specimen, kept for a later configuration of the same process that has the same surface.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -10,14 +10,16 @@
 
 namespace vkfv::measurement {
 
-// Most sweeps do not vary the surface, and making it may take longer than tracing an image: so the last one is kept.
+// The last surface is kept, since most sweeps do not vary the surface, and making one may take longer than tracing an
+// image.
 class Surfaces {
   public:
     struct Surface {
-        specimen::Specimen specimen; // with the material asked for
+        specimen::Specimen specimen; // with the material of the configuration
         std::string digest;          // of the geometry
     };
-    // Valid until the next call. Throws InputError at the place of the key that does not fit.
+    // The surface of the configuration's specimen, valid until the next call. Throws InputError at the place of the key
+    // that does not fit.
     const Surface& of(const Configuration& configuration);
 
   private:

@@ -1,4 +1,4 @@
-// A judgement in plain sentences: of what can be measured, before, and of what was measured, after.
+// A judgement in plain sentences: before a run of what can be measured, after it of what was measured.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,9 +12,9 @@
 namespace vkfv::measurement {
 
 struct Verdict {
-    enum class Measurable { yes, partly, no, unknown }; // unknown: there is no specimen or no scan to judge
+    enum class Measurable { yes, partly, no, unknown }; // unknown: no specimen or no scan to judge
     Measurable measurable = Measurable::unknown;
-    std::vector<std::string> sentences; // whole, the most important first
+    std::vector<std::string> sentences; // full sentences, the most important first
 };
 
 inline const std::array<const char*, 4>& names_of_measurable() {
@@ -30,7 +30,8 @@ inline nlohmann::ordered_json json_of(const Verdict& verdict) {
     return {{"measurable", name_of(verdict.measurable)}, {"sentences", verdict.sentences}};
 }
 
-// The verdict of such an object. Throws nlohmann's exceptions where it is none; a word that is no answer is unknown.
+// The verdict that the JSON object holds. Throws nlohmann's exceptions where it holds none; an answer that is not known
+// becomes `unknown`.
 inline Verdict verdict_of_json(const nlohmann::ordered_json& json) {
     const std::string answer = json.at("measurable");
     const auto& names = names_of_measurable();

@@ -1,4 +1,4 @@
-// Warnings as JSON has them: the same in what every command writes.
+// Warnings as JSON, in one form for all commands.
 #pragma once
 
 #include "core/messages/warning.hpp"
@@ -21,7 +21,7 @@ inline nlohmann::ordered_json json_of(const std::vector<Warning>& warnings) {
     return json;
 }
 
-// Throws nlohmann's exceptions where it is none.
+// The warnings that the JSON holds. Throws nlohmann's exceptions where it is no list of warnings.
 inline std::vector<Warning> warnings_of_json(const nlohmann::ordered_json& json) {
     std::vector<Warning> warnings;
     for (const auto& one : json) {

@@ -17,10 +17,11 @@ namespace vkfv::measurement {
 
 namespace {
 
-// Half of the storage buffer that Vulkan asks every device for (maxStorageBufferRange, 128 MiB).
+// Half of the storage buffer (bytes) that Vulkan requires of every device (maxStorageBufferRange, 128 MiB).
 constexpr std::uint64_t every_device_holds = std::uint64_t{1} << 26;
 
-// The options of each source's light. Sources have the same number of cells, and are asked for one at a time.
+// The options of each source's light. All sources have the same number of cells; the light of one source is sorted at a
+// time.
 std::vector<optics::WaveOptions> options_of_lights(const Configuration& configuration,
                                                    const optics::Instrument& instrument, int cells, int tiles) {
     std::vector<optics::WaveOptions> all;
@@ -65,7 +66,7 @@ std::optional<Warning> warning_of_host(const std::vector<optics::WaveOptions>& o
 } // namespace
 
 void refuse_beyond_host(const optics::WaveOptions& options, const optics::Instrument& instrument) {
-    constexpr int fewest_cells = 8; // that are chosen where none are given
+    constexpr int fewest_cells = 8; // the least number that is chosen where none is given
     const trace::WaveSizes least = {.cells = options.cells > 0 ? options.cells : fewest_cells,
                                     .parts = optics::parts_of(options, instrument),
                                     .tiles = 1,
@@ -137,7 +138,7 @@ std::vector<Warning> wave_warnings_of_device(const Configuration& configuration,
         const auto reports = vulkan::list_devices();
         const auto chosen = vulkan::choose_devices(reports, configuration.trace.device);
         return wave_warnings_of(reports[chosen.front()], configuration, instrument, cells, tiles);
-    } catch (const DeviceError&) { // of a machine that images are not made on
+    } catch (const DeviceError&) { // the configuration's images are not made on this machine
         return {};
     }
 }

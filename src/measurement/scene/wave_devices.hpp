@@ -1,4 +1,4 @@
-// Whether the device that images of waves will be made on holds them, before any image is traced.
+// A check, before any image is traced, that the device for images of waves has the memory for them.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -11,18 +11,17 @@
 
 namespace vkfv::measurement {
 
-// Sentences tell what does not fit on the device: where it has no room even for one part of a pixel, which of its
-// limits forbids that; where it has room for fewer parts than the waves ask for, how many. cells: across the pupil;
-// tiles: across the field. A configuration without waves has none.
+// Warnings about images of waves that do not fit on the device. Where it has no room even for one part of a pixel, the
+// warning names the limit that forbids it; where it has room for fewer parts than the waves ask for, it tells how many.
+// cells: across the pupil; tiles: across the field. A configuration without waves has no warnings.
 std::vector<Warning> wave_warnings_of(const vulkan::DeviceReport& device, const Configuration& configuration,
                                       const optics::Instrument& instrument, int cells, int tiles);
 
-// The same of the device of trace.device, the first of several. Without a driver or such a device there are none, and
-// the device is not looked for where the images are so small that every device holds them.
+// Warnings for the device of trace.device, the first if there are several. There are none without a driver or such a
+// device. The device is not looked for where the images are so small that every device holds them.
 std::vector<Warning> wave_warnings_of_device(const Configuration& configuration, int cells, int tiles);
 
-// Throws InputError where light sorted for waves cannot lie in this machine's memory, when its processor traces in
-// double.
+// Throws InputError where light sorted for waves exceeds this machine's memory, for traces in double on its processor.
 void refuse_beyond_host(const optics::WaveOptions& options, const optics::Instrument& instrument);
 
 } // namespace vkfv::measurement

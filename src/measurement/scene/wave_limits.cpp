@@ -36,7 +36,7 @@ bool have_one_spectrum(const optics::Instrument& a, const optics::Instrument& b)
     return std::ranges::equal(a.spectral_bins, b.spectral_bins, same);
 }
 
-// filter_of(k): that of the k-th light.
+// filter_of(k): the pupil filter of light k.
 template <class FilterOf>
 std::vector<WaveLimits> limits_of_each(const optics::Instrument& instrument, const FilterOf& filter_of) {
     std::vector<WaveLimits> all;

@@ -23,7 +23,7 @@ WorkingDevices::Member::Member(std::string its_selector) : selector(std::move(it
 }
 
 void WorkingDevices::Member::open() {
-    device = {}; // one that is lost closes first
+    device = {}; // a lost device closes before it is opened again
     if (selector != "host") {
         device = vulkan::begin_to_open(vulkan::DeviceOptions{selector});
     }
@@ -38,7 +38,7 @@ WorkingDevices::WorkingDevices(const std::string& selector) {
     const auto reports = vulkan::list_devices();
     const auto chosen = vulkan::choose_devices(reports, selector);
     for (const std::size_t device : chosen) {
-        // Alone it goes by its own words, so that a message repeats them.
+        // A single device keeps the words of its selector, so that a message repeats them.
         members_.emplace_back(chosen.size() == 1 && selector != "all" ? selector
                                                                       : fmt::format("{}", reports[device].index));
     }

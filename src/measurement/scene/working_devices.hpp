@@ -1,4 +1,4 @@
-// The devices of a run; one that fails is opened again, then left out.
+// The devices of a run. A device that fails is opened again, then left out.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -20,32 +20,34 @@ class DeviceFailure;
 
 namespace vkfv::measurement {
 
-// A device that is lost or full is opened again, with half the batch; the next time it is left out.
+// A device that is lost or full is opened again, with half the batch. If it fails again, it is left out.
 class WorkingDevices {
   public:
-    // Those of trace.device: see vulkan::choose_devices(); "host" means the reference in double on the host's cores.
-    // They are opened by threads of their own, while the scene is made. Throws DeviceError where a list names none.
+    // The devices that trace.device selects: see vulkan::choose_devices(); "host" means the reference in double on the
+    // host's cores. Threads of their own open the devices while the scene is made. Throws DeviceError where a list
+    // names no device.
     explicit WorkingDevices(const std::string& selector);
 
-    // On all of them; what the options say of devices and batches' divisor does not count. Throws DeviceError, also
-    // where a device has not opened.
+    // A tracer on all of these devices. It ignores the devices and the divisor of batches in the options. Throws
+    // DeviceError, also where a device has not opened.
     std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                                const trace::TraceOptions& options) const;
 
     int size() const { return static_cast<int>(members_.size()); }
-    WorkingDevices first() const; // alone
+    WorkingDevices first() const; // the first device alone
 
-    // With a warning. Throws the failure where no device is left, or where it would not pass.
+    // Opens the device again or leaves it out, with a warning in the log. Throws the failure where no device is left,
+    // or where it would fail again.
     void take_note(const vulkan::DeviceFailure& failure);
 
   private:
     struct Member {
         explicit Member(std::string selector);
-        void open(); // again
+        void open(); // also opens a lost device again
 
         std::string selector;
         std::uint64_t batch_divisor = 1;
-        vulkan::OpenedDevice device; // none on the host
+        vulkan::OpenedDevice device; // empty on the host
     };
     explicit WorkingDevices(std::vector<Member> members) : members_(std::move(members)) {}
 
@@ -56,8 +58,8 @@ class WorkingDevices {
 std::unique_ptr<trace::Tracer> make_tracer(const WorkingDevices& devices, const Configuration& configuration,
                                            const optics::Instrument& instrument, const specimen::Specimen& specimen);
 
-// Does the work with the devices, again from its beginning where one of them has failed. What is stored meanwhile is to
-// be kept by the work itself.
+// Does the work with the devices, and again from its beginning if one of them fails. The work itself must keep what it
+// has finished.
 void work_with_devices(WorkingDevices& devices, const std::function<void(const WorkingDevices&)>& work);
 
 } // namespace vkfv::measurement

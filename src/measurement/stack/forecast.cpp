@@ -27,11 +27,11 @@ namespace {
 
 constexpr double probe_seconds = 0.5;
 constexpr std::uint64_t first_rays = 200'000;
-// What a run holds in memory of a pixel beside what the probe had: images that wait for the disk, and at the end maps
+// Bytes that a run holds for each pixel beyond those of the probe: images that wait for the disk, and at the end maps
 // of heights, deviations and pictures.
 constexpr std::uint64_t bytes_a_pixel_of_run = 450;
 
-// Peak of this process's memory so far, bytes.
+// The peak of this process's memory so far, bytes.
 std::uint64_t peak_memory() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {
@@ -56,7 +56,7 @@ class Prober {
           specimen_(make_specimen(configuration)), instrument_(instrument_for(configuration, specimen_, focal_height)) {
     }
 
-    // The second of two exposures: the first one warms up.
+    // The second of two exposures, since the first one warms up.
     Probe expose(std::uint64_t rays) const {
         auto options = configuration_.trace;
         options.rays = std::min(rays, options.rays);
@@ -64,7 +64,7 @@ class Prober {
         (void)tracer->expose(focal_height_, 0);
         Probe probe{.image = tracer->expose(focal_height_, 1), .device = tracer->identity().text()};
         if (configuration_.scan) {
-            // What an evaluation keeps does not grow with the number of images.
+            // The memory of an evaluation does not grow with the number of images.
             StackEvaluation evaluation(evaluation_options(configuration_, instrument_),
                                        focus_planes_for(configuration_.evaluate_on, tracer->device()),
                                        diffraction_of_evaluation(configuration_, instrument_), 0);
@@ -90,7 +90,7 @@ class Prober {
     optics::Instrument instrument_;
 };
 
-// What the camera makes of light like the probe's, of so many times as many rays.
+// The camera's figures of light like the probe's, for `more` times as many rays.
 CameraFigures camera_of_probe(const Configuration& configuration, const trace::Image& image, double more) {
     const camera::Camera camera(configuration.camera.value(), configuration.instrument.spectrum);
     const auto& options = camera.options();
@@ -145,13 +145,14 @@ Forecast forecast(const Configuration& configuration) {
     result.noise = 1 / signal_to_noise(probe.image) / std::sqrt(more);
     if (configuration.camera && result.light_per_pixel > 0) {
         result.camera = camera_of_probe(configuration, probe.image, more);
-        // Of pixels the few rays' noise would tell: their mean alone.
+        // Only the mean tells whether pixels saturate, since single pixels have the noise of few rays.
         const bool saturated = result.camera->light.mean > configuration.camera->full_well;
         result.camera->light.saturated_share = result.camera->largest_saturated_share = saturated ? 1 : 0;
         result.warnings = camera_warnings(configuration, *result.camera);
     }
-    // Beside the rays an image takes a time that does not depend on their number. But rays take most of a probe: a
-    // first exposure that other work held up must not make them look free.
+    // An image takes a time that does not depend on its rays, and a time in proportion to them. The rays are taken to
+    // need at least half of the probe's time, so that a first exposure that other work held up does not make them look
+    // free.
     const double between = tried - static_cast<double>(first.image.rays);
     const double slope = between > 0 ? (probe.image.seconds - first.image.seconds) / between : 0;
     const double seconds_a_ray = std::max(slope, probe.image.seconds / tried / 2);

@@ -1,4 +1,5 @@
-// What a stack or an image will take, before it is traced: from a probe of half a second on the device at hand.
+// The time, memory and disk space that a stack or an image will take, found by a probe of half a second on the device
+// at hand before it is traced.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -14,22 +15,22 @@ namespace vkfv::measurement {
 
 struct Forecast {
     std::string device;
-    int devices = 1; // that work at a time, each like the one that was tried
+    int devices = 1; // that share the images, each as fast as the probe's
     int images = 1;
     std::uint64_t rays_per_image = 0; // launched
 
-    // By the probe, in the middle of the scan. Of an image with all its rays:
+    // These figures are of an image with all its rays in the middle of the scan, by the probe.
     double light_per_pixel = 0;          // W, mean
     double detected_rays_per_pixel = 0;  // mean
     double noise = 0;                    // root mean square of the pixels' standard errors over their mean light
-    std::optional<CameraFigures> camera; // of the camera's image of it; its exposure time is the probe's own
+    std::optional<CameraFigures> camera; // of the camera's image, by the probe's exposure time
     std::vector<Warning> warnings;
     double seconds_per_image = 0; // wall clock
     double seconds = 0;           // of all images
 
-    // Bytes: at most at a time, and what there is.
-    std::uint64_t device_memory = 0;       // without what the library of Fourier transforms keeps for itself
-    std::uint64_t device_memory_there = 0; // 0: the host's
+    // The largest amount in bytes that is taken at a time, and the amount that there is.
+    std::uint64_t device_memory = 0;       // without the own memory of the library of Fourier transforms
+    std::uint64_t device_memory_there = 0; // 0: the host traces
     std::uint64_t host_memory = 0;         // estimated
     std::uint64_t host_memory_there = 0;
     std::uint64_t disk = 0;
@@ -38,11 +39,11 @@ struct Forecast {
     bool fits() const { return disk <= disk_there && host_memory <= host_memory_there; }
 };
 
-// Throws InputError, DeviceError, RunError.
+// Traces the probe. Throws InputError, DeviceError, RunError.
 Forecast forecast(const Configuration& configuration);
 
 nlohmann::ordered_json json_of(const Forecast& forecast);
-// How long all of it takes, on what, for a verdict.
+// A sentence of a verdict: how long all images take, and on which devices.
 std::string time_sentence(const Forecast& forecast);
 // Lines for a terminal, without the warnings.
 std::string summary(const Forecast& forecast);

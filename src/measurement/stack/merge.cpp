@@ -1,4 +1,4 @@
-// Shards of a stack become one.
+// The merging of a stack's shards.
 #include "core/messages/error.hpp"
 #include "core/messages/interruption.hpp"
 #include "core/messages/stages.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "3 to 7, 12" of ascending numbers.
+// Ascending numbers as "3 to 7, 12".
 std::string ranges_text(const std::vector<int>& numbers) {
     std::vector<std::string> ranges;
     for (std::size_t first = 0; first < numbers.size();) {
@@ -36,8 +36,8 @@ std::string ranges_text(const std::vector<int>& numbers) {
     return fmt::format("{}", fmt::join(ranges, ", "));
 }
 
-// That traced the images of this identity, and would trace them now: the device stays, kernels and instrument are those
-// that this program has.
+// The tracer that made the images of this identity, as it would trace them now: its device, with the kernels and the
+// instrument of this program.
 trace::TracerIdentity tracer_of(const std::string& identity, const StackScene& scene, const fs::path& folder) {
     auto tracer =
         trace::TracerIdentity::parse(TomlTable::parse(identity, folder / scan::configuration_name).table("made"));
@@ -46,7 +46,7 @@ trace::TracerIdentity tracer_of(const std::string& identity, const StackScene& s
     return tracer;
 }
 
-// One a light; none: images of rays.
+// The pupil filter of each source's light; none where images are made by rays.
 std::vector<optics::PupilFilter> filters_of_run(const Configuration& configuration, const trace::TracerIdentity& tracer,
                                                 const optics::Instrument& instrument) {
     std::vector<optics::PupilFilter> filters;
@@ -122,7 +122,7 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
 
     const auto filters = filters_of_run(configuration, tracer, scene.instrument);
     enter_stage("images");
-    // Everywhere to the same bits: a device that is not here is not missed.
+    // The evaluation has the same bits on every device, so a device that is not here is not missed.
     const auto evaluate_on = configuration.evaluate_on == EvaluateOn::host ? EvaluateOn::host : EvaluateOn::automatic;
     GrowingEvaluation evaluation(
         scene, focus_planes_for_files(evaluate_on, configuration.trace.device, scene.positions.size()), filters);

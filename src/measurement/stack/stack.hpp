@@ -1,4 +1,4 @@
-// A stack as the instrument takes it: exposures over a scan, evaluated and compared with the truth.
+// Measurement of a stack as the instrument does it: exposures over a scan, evaluated and compared with the truth.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -17,19 +17,19 @@ namespace vkfv::measurement {
 
 struct StackResult {
     Evaluation evaluation;
-    scan::StackSummary traced;        // what this run traced, and what was there
+    scan::StackSummary traced;        // images that this run traced or found
     std::uint64_t rays_per_image = 0; // launched
-    std::filesystem::path folder;     // that holds the images and all results
-    std::string device{};             // that traced it; empty: not known
+    std::filesystem::path folder;     // of the images and all results
+    std::string device{};             // device that traced the images; empty: not known
 };
 
-// Traces what the output folder lacks of the stack that the configuration asks for, evaluates all of it, and writes the
+// Traces the images that the output folder lacks of the configuration's stack, evaluates all of them, and writes the
 // results there (write_results()). Images kept from an earlier run give the same result as those traced now. Throws
 // InputError, DeviceError, and RunError after which the same call continues.
 StackResult measure_stack(const Configuration& configuration, Progress& progress);
 
-// Traces what the output folder lacks of this shard's images, and evaluates nothing: merge_stack() does when all are
-// there. Throws as measure_stack().
+// Traces the images that the output folder lacks of this shard. It evaluates nothing; merge_stack() does when all
+// images are there. Throws as measure_stack().
 struct ShardResult {
     scan::Shard shard;
     scan::StackSummary traced;
@@ -39,14 +39,14 @@ ShardResult trace_shard(const Configuration& configuration, scan::Shard shard, P
 std::string summary(const ShardResult& shard);
 nlohmann::ordered_json shard_json(const ShardResult& shard);
 
-// Puts the images of a stack's shards into one folder, which may hold some of them already, and evaluates them as the
-// run that traces all of them would: its bytes. Needs no device; without the one that traced, a warning tells that the
-// heights of a GPU may differ in their last digits. shards: other folders of the same stack; they stay as
-// they are. Throws InputError where one is of another configuration, program or device, an image is not whole, or some
-// are missing.
+// Puts the images of a stack's shards into one folder, which may hold some of them already, and evaluates them to the
+// same bytes as a run that traces all of them. Needs no device; without the device that traced, a warning tells that
+// the heights of a GPU may differ in their last digits. shards: other folders of the same stack, which are left as they
+// are. Throws InputError where a shard is of another configuration, program or device, an image is not whole, or some
+// images are missing.
 StackResult merge_stack(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& shards);
 
-// The figures, times and folder as a text of a few lines.
+// A text of a few lines with figures, times and the folder.
 std::string summary(const StackResult& stack);
 
 } // namespace vkfv::measurement

@@ -1,4 +1,4 @@
-// What a stack's images and its results have in common, whoever traced the images: one run, or shards.
+// The parts that a stack's images and results have in common, whether one run traced the images or several shards.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -22,7 +22,7 @@
 
 namespace vkfv::measurement {
 
-// Instrument and specimen of a configuration's stack.
+// The instrument and the specimen of a configuration's stack.
 class StackScene {
   public:
     struct Parts {
@@ -30,12 +30,12 @@ class StackScene {
         optics::Instrument instrument;
     };
 
-    // surfaces: where the specimen may be there already; null: it is made. Throws InputError.
+    // surfaces: may hold the specimen's surface already; null: the surface is made. Throws InputError.
     static std::shared_ptr<const Parts> make_parts(const Configuration& configuration, Surfaces* surfaces = nullptr);
 
     // The scene of the configuration, which must outlive it. The log gets the plan's warnings. Throws InputError.
     explicit StackScene(const Configuration& configuration);
-    // The scene of a configuration whose parts were made for another one. Leaves the log alone.
+    // The scene of a configuration whose parts were made for another one. It writes nothing to the log.
     StackScene(const Configuration& configuration, std::shared_ptr<const Parts> parts);
 
     ImageSize pixels() const { return configuration.instrument.detector_pixels; }
@@ -51,25 +51,25 @@ class StackScene {
     const specimen::Specimen& specimen;
     const optics::Instrument& instrument;
     std::vector<Warning> planned;  // warnings of the plan
-    std::vector<Warning> warnings; // these and the instrument's, which are in the log
+    std::vector<Warning> warnings; // of the plan and the instrument, in the log already
 };
 
-// Converts light to the images that are stored: by the camera, if there is one. The configuration must outlive it.
+// The function that converts light to stored images, by the camera if there is one. The configuration must outlive it.
 scan::ImageDeveloper developer_of(const StackScene& scene, const scan::ImageStore& store,
                                   const WorkingDevices& devices);
 
-// A stack that is evaluated while its images come. What no image is needed for is made beside them.
+// Evaluates a stack while its images come. Meanwhile threads make everything that needs no image.
 class GrowingEvaluation {
   public:
-    // filters: what makes the images as waves do, one a light; none: they are as rays make them. The scene must outlive
-    // it.
+    // filters: the pupil filter of each source's light for images of waves; empty for images of rays. The scene must
+    // outlive the evaluation.
     GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
                       const std::vector<optics::PupilFilter>& filters);
 
-    // In the images' order.
+    // Adds an image. Images must come in their order.
     void add(int image, Grid<float> values);
 
-    // After the last image: heights and their deviations. Warnings go to the log.
+    // Heights and deviations, after the last image. Warnings go to the log.
     EvaluatedStack finish(scan::ImageStore& store, const trace::TracerIdentity& tracer);
 
   private:
@@ -83,7 +83,7 @@ class GrowingEvaluation {
     std::optional<std::future<PhaseLimits>> phase_limits_;
 };
 
-// The files of a stack's evaluation in the store's folder.
+// Writes the files of a stack's evaluation into the store's folder.
 void write_stack_results(scan::ImageStore& store, const Configuration& configuration, const EvaluatedStack& stack);
 
 } // namespace vkfv::measurement

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// An identity without its tables of these names and what is below them.
+// An identity without the tables of these names and the tables below them.
 std::string without_tables(const std::string& identity, std::initializer_list<std::string_view> names) {
     std::string text;
     bool kept = true;
@@ -37,13 +37,13 @@ std::string without_tables(const std::string& identity, std::initializer_list<st
     return text;
 }
 
-// Requests are no part of an identity, and yet decide which device traces how.
+// Requests are not part of an identity, although they decide which device traces and how.
 std::string requests_of(const Configuration& configuration) {
     return fmt::format("device = {}\ntraversal = {}\n", configuration.trace.device,
                        static_cast<int>(configuration.trace.traversal));
 }
 
-// Takes the images that the store lacks from folders which hold them whole. Images by another device are not taken.
+// Takes images that the store lacks from folders that hold them whole. Images that another device traced are left.
 void take_images(scan::ImageStore& store, const std::vector<fs::path>& folders) {
     for (const fs::path& folder : folders) {
         for (int image = 0; image < static_cast<int>(store.description().positions.size()); ++image) {
@@ -58,7 +58,7 @@ void take_images(scan::ImageStore& store, const std::vector<fs::path>& folders) 
     }
 }
 
-// Another stack of the light that is traced now.
+// Another stack whose images are made of the light that is traced now.
 struct Follower {
     StackScene scene;
     scan::ImageStore store;
@@ -101,7 +101,7 @@ StackResult StackRuns::trace_and_evaluate(const StackScene& scene, const Working
                                           const StackAmongOthers& others, Progress& progress) {
     const Configuration& configuration = scene.configuration;
     enter_stage("device, kernels");
-    // A failure leaves no tracer behind, since its device may be lost.
+    // A failure must leave no tracer behind, since its device may be lost.
     auto tracer = std::move(light_->tracer);
     if (!tracer) {
         tracer = make_tracer(devices, configuration, scene.instrument, scene.specimen);
@@ -123,7 +123,7 @@ StackResult StackRuns::trace_and_evaluate(const StackScene& scene, const Working
                        [&](int k) { followers[static_cast<std::size_t>(k)]->take(image, exposure); });
         return own(image, exposure);
     };
-    // Evaluated as they are traced: no second pass over the disk.
+    // Images are evaluated as they are traced, which saves a second pass over the disk.
     GrowingEvaluation evaluation(scene, focus_planes_for(configuration.evaluate_on, tracer->device()),
                                  tracer->pupil_filters());
     enter_stage("images");
@@ -141,7 +141,8 @@ StackResult StackRuns::trace_and_evaluate(const StackScene& scene, const Working
     if (others.light_again) {
         light_->tracer = std::move(tracer);
     } else {
-        // The tracer gives its memory back beside the results: a driver takes a tenth of a second for gigabytes.
+        // The tracer frees its memory while results are written, since a driver takes a tenth of a second for
+        // gigabytes.
         closed = std::async(std::launch::async, [tracer = std::move(tracer)]() mutable { tracer.reset(); });
     }
     write_stack_results(store, configuration, evaluated);
@@ -156,8 +157,8 @@ StackResult StackRuns::measure(const Configuration& configuration, Progress& pro
     WorkingDevices& devices = devices_of(configuration);
     const std::string key = light_key(configuration);
     if (!light_ || light_->key != key) {
-        light_.reset(); // before the next takes memory
-        // The surface alone may be that of the next stack, of another material or instrument.
+        light_.reset(); // frees its memory before the next light takes its own
+        // The next stack, of another material or instrument, may have the same surface.
         light_ = Light{.key = key,
                        .parts = StackScene::make_parts(configuration, others.more ? &surfaces_ : nullptr),
                        .tracer = nullptr};

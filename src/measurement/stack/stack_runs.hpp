@@ -1,4 +1,4 @@
-// Stacks that one process measures, one after the other. What they have in common is made once.
+// Stacks that one process measures one after the other. Their common parts are made once.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -17,16 +17,17 @@
 
 namespace vkfv::measurement {
 
-// Equal texts: the images have the same bits, if one device traces them.
+// Configurations with equal texts have images of the same bits, if one device traces them.
 std::string image_key(const Configuration& configuration);
-// Equal texts: the same light falls on the detector, of which different cameras may make different images.
+// Configurations with equal texts have the same light on the detector; different cameras may make different images of
+// it.
 std::string light_key(const Configuration& configuration);
 
-// A stack among others of the same process.
+// A stack among other stacks of the same process.
 struct StackAmongOthers {
-    // Folders of stacks with the same image_key(): what they hold of the images is taken from there.
+    // Folders of stacks with the same image_key(), whose images are taken as far as they are there.
     std::vector<std::filesystem::path> same_images;
-    // Configurations with the same light_key(), each with an image_key() of its own: their images are made, in their
+    // Configurations with the same light_key(), each with an image_key() of its own. Their images are made, in their
     // folders, of the light that is traced now.
     std::vector<const Configuration*> same_light;
     bool light_again = false; // a stack with the same light_key() follows
@@ -35,12 +36,12 @@ struct StackAmongOthers {
 
 class StackRuns {
   public:
-    // Measures a stack as measure_stack() does. Devices stay open for the next stack, and of a stack with the same
-    // light_key() scene and kernels are used again. The bits are those of measure_stack() by itself. Throws as it does;
-    // the same call continues.
+    // Measures a stack as measure_stack() does, to the same bits. Devices stay open for the next stack, and a stack
+    // with the same light_key() uses the scene and kernels again. Throws as measure_stack() does; the same call
+    // continues.
     StackResult measure(const Configuration& configuration, Progress& progress, const StackAmongOthers& others = {});
 
-    // The devices of the configuration: those that are open, if it asks for them.
+    // The devices that the configuration asks for; open devices are used again.
     WorkingDevices& devices_of(const Configuration& configuration);
 
   private:
@@ -48,7 +49,7 @@ class StackRuns {
     struct Light {
         std::string key;
         std::shared_ptr<const StackScene::Parts> parts;
-        std::unique_ptr<trace::Tracer> tracer; // none: it is to be made
+        std::unique_ptr<trace::Tracer> tracer; // null: to be made
     };
 
     StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& devices,

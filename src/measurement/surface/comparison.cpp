@@ -26,7 +26,7 @@ std::string grid_text(const HeightMap& map) {
                        map.y0 * um_per_mm);
 }
 
-// To a hundredth of a pitch everywhere.
+// Tells whether the grids agree to a hundredth of a pitch everywhere.
 bool same_grid(const HeightMap& a, const HeightMap& b) {
     const auto near = [](double first, double pitch, int points, double other_first, double other_pitch) {
         return std::abs(first - other_first) + points * std::abs(pitch - other_pitch) < 0.01 * pitch;
@@ -43,7 +43,7 @@ HeightMap map_of(const std::filesystem::path& file, const ComparisonRequest& req
     return std::move(read.map);
 }
 
-// Of one field, each with heights.
+// Reads the measurements. Throws InputError unless all stand on one grid and have heights.
 std::vector<HeightMap> read_measurements(const ComparisonRequest& request, std::vector<std::string>& warnings) {
     const auto& files = request.measurements;
     std::vector<HeightMap> measurements;
@@ -62,7 +62,7 @@ std::vector<HeightMap> read_measurements(const ComparisonRequest& request, std::
     return measurements;
 }
 
-// The truth has heights under the measurements.
+// Throws InputError where the truth has no heights under the measurements.
 void check_place(const ComparisonRequest& request, const HeightMap& first, const HeightMap& truth) {
     const auto& measured_file = request.measurements.front();
     if (HeightMap moved = truth; !same_grid(first, truth)) {

@@ -1,4 +1,4 @@
-// Measured against true surfaces, each from its file.
+// The comparison of measured surfaces with a true one, each from its file.
 #pragma once
 
 #include "surface/band.hpp"
@@ -14,12 +14,12 @@ namespace vkfv::measurement {
 struct ComparisonRequest {
     std::vector<std::filesystem::path> measurements; // at least one; repeated ones stand on one grid
     std::filesystem::path truth;
-    bool align = false;           // the lateral shift is removed
-    bool accept_checksum = false; // of files whose checksums are stale
+    bool align = false;           // remove the lateral shift
+    bool accept_checksum = false; // read files whose checksums are stale
     surface::Band band;
 };
 
-// Along the middle row, of the first measurement and of the truth under it, treated.
+// The middle row of the first measurement and of the truth under it, both treated.
 struct ComparedProfile {
     surface::ProfileLine line;
     surface::RoughnessProfile measured, truth;
@@ -29,10 +29,10 @@ struct ComparisonResult {
     topography::Comparison comparison;
     topography::LevelledPair pair; // the first measurement and the truth under it, treated
     ComparedProfile profile;
-    std::vector<std::string> warnings; // of the files
+    std::vector<std::string> warnings; // about the files
 };
 
-// Throws InputError for files that cannot be read, or of surfaces that cannot be compared.
+// Compares the surfaces. Throws InputError for files that cannot be read, or surfaces that cannot be compared.
 ComparisonResult compare_files(const ComparisonRequest& request);
 
 } // namespace vkfv::measurement

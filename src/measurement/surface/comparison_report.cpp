@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A mean over the measurements; its standard error from their scatter, NaN for one alone.
+// A mean over the measurements, and its standard error from their scatter, NaN for a single measurement.
 struct MeanAndError {
     double mean = 0;
     double error = 0;
@@ -46,9 +46,9 @@ MeanAndError over(const topography::Comparison& comparison, const Figure& figure
     return mean_and_error(values);
 }
 
-// One parameter over the measurements, and of the truth under them.
+// One parameter over the measurements, and that of the truth under them.
 struct ComparedParameter {
-    report::ParameterRow named; // its value does not count
+    report::ParameterRow named; // name and unit only
     MeanAndError measured;
     double truth = 0;
 };
@@ -77,7 +77,7 @@ Json shift_json(const topography::LateralShift& shift) {
     return {{"x_um", shift.x * um_per_mm}, {"y_um", shift.y * um_per_mm}, {"correlation", shift.correlation}};
 }
 
-// NaN (not measured, undefined) becomes null in JSON.
+// NaN (not measured, undefined) becomes null.
 Json json_of(const topography::Comparison& comparison, const ComparisonRequest& request) {
     const auto add = [](Json& object, const std::string& name, const MeanAndError& value) {
         object[name] = value.mean;
@@ -165,7 +165,7 @@ std::string text_of(const topography::Comparison& comparison, const ComparisonRe
     }
     text += fmt::format("{:<22} {}\n", "correlation",
                         with_error(over(comparison, [](const auto& one) { return one.deviation.correlation; }), 1, ""));
-    // The slope on a true surface without relief does not exist.
+    // A true surface without relief has no slope of the measured on the true heights.
     if (const auto slope = over(comparison, [](const auto& one) { return one.deviation.slope; });
         std::isfinite(slope.mean)) {
         text += fmt::format(
@@ -195,7 +195,7 @@ std::string transfer_csv(const topography::Comparison& comparison) {
     return text;
 }
 
-// An empty field where no point was measured.
+// CSV of the deviation by slope. A field is empty where no point was measured.
 std::string slope_csv(const topography::Comparison& comparison) {
     std::string text = "slope_from_deg,slope_to_deg,points,measured_share,bias_um,rms_um\n";
     for (const auto& bin : comparison.slopes) {
@@ -228,7 +228,7 @@ std::string profile_text(const ComparedProfile& profile) {
     return text;
 }
 
-// An empty field where no point was measured.
+// CSV of the profiles. A field is empty where no point was measured.
 std::string profile_csv(const ComparedProfile& profile, const surface::HeightMap& measured) {
     std::string text = "x_um,measured_um,true_um\n";
     const auto um = [](double value) { return std::isnan(value) ? "" : fmt::format("{:.6g}", value * um_per_mm); };
@@ -239,7 +239,7 @@ std::string profile_csv(const ComparedProfile& profile, const surface::HeightMap
     return text;
 }
 
-// `pair`: the first measurement and the truth under it, treated.
+// `pair` is the first measurement and the truth under it, both treated.
 std::string picture_of(const topography::Comparison& comparison, topography::LevelledPair pair,
                        const std::string& title) {
     report::Curve transfer{.name = "transfer", .points = {}, .spreads = {}};

@@ -1,4 +1,4 @@
-// The text, tables and files of a comparison.
+// The text, JSON and files of a comparison.
 #pragma once
 
 #include "measurement/surface/comparison.hpp"
@@ -10,14 +10,14 @@
 
 namespace vkfv::measurement {
 
-// NaN (not measured, undefined) becomes null.
+// JSON of the comparison. NaN (not measured, undefined) becomes null.
 nlohmann::ordered_json comparison_json(const ComparisonRequest& request, const ComparisonResult& result);
 
-// Tables for a person.
+// Tables for a terminal.
 std::string comparison_text(const ComparisonRequest& request, const ComparisonResult& result);
 
-// Into the folder, checksums last: compare.json, deviation by spatial frequency (transfer.csv) and by slope
-// (slope.csv), the profiles (profile.csv), deviation.tif, of repeated measurements random.tif, and compare.svg.
+// Writes into the folder, checksums last: compare.json, the deviation by spatial frequency (transfer.csv) and by slope
+// (slope.csv), the profiles (profile.csv), deviation.tif, for repeated measurements random.tif, and compare.svg.
 void write_comparison(const std::filesystem::path& folder, const ComparisonRequest& request,
                       const ComparisonResult& result);
 

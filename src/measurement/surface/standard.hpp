@@ -1,4 +1,4 @@
-// The dimensions of a standard: nominal, true and measured.
+// The dimensions of a standard: nominal, true and measured values.
 #pragma once
 
 #include "dimensions/evaluate.hpp"
@@ -11,12 +11,12 @@
 
 namespace vkfv::measurement {
 
-// One dimension on the measured heights and on the true ones, found on either by the same rule.
+// One dimension of the measured and of the true heights, found by the same rule.
 struct StandardDimension {
     dimensions::Dimension measured;
-    double truth = surface::undefined; // in the unit of the measured one; NaN without a truth
+    double truth = surface::undefined; // in the unit of `measured`; NaN without a truth
 
-    // In the units of results: um, degrees, or none.
+    // The values in the units of results: um, degrees, or none.
     struct Row {
         std::string name, rule, unit;
         double nominal, truth, measured;
@@ -28,18 +28,18 @@ struct StandardDimension {
     Row in_unit() const;
 };
 
-// truth: on the same grid.
+// The dimensions of the feature. truth: on the grid of the measured heights.
 std::vector<StandardDimension> standard_dimensions(const dimensions::Feature& feature,
                                                    const surface::HeightMap& measured,
                                                    const std::optional<surface::HeightMap>& truth);
 
-// A list of objects; NaN (not measured, not known) becomes null.
+// A list of objects. NaN (not measured, not known) becomes null.
 nlohmann::ordered_json json_of(const std::vector<StandardDimension>& dimensions);
 
-// As the member "dimensions", if there are any.
+// Adds the dimensions as the member "dimensions", if there are any.
 void add_dimensions(nlohmann::ordered_json& results, const std::vector<StandardDimension>& dimensions);
 
-// A line each.
+// A line for each dimension.
 std::string dimensions_text(const std::vector<StandardDimension>& dimensions);
 
 } // namespace vkfv::measurement

@@ -33,7 +33,7 @@ surface::SurfaceFile requested_surface(const SurfaceRequest& request) {
     } catch (const InputError& error) {
         throw error.with_each([](InputProblem& problem) {
             if (problem.key == surface::scale_pitch_key ||
-                problem.key == surface::scale_unit_key) { // the reader does not know the command line
+                problem.key == surface::scale_unit_key) { // the file's reader has no options
                 problem.key = "--" + problem.key + "_um";
             }
         });
@@ -82,7 +82,7 @@ surface::ProfileLine line_of(const SurfaceRequest& request, const HeightMap& map
     return line;
 }
 
-// Throws for a profile that is too short for its setting class, or rougher than all.
+// Throws InputError for a profile that is too short for its setting class, or rougher than all classes.
 void check_class(const SurfaceRequest& request, const surface::RoughnessProfile& profile) {
     if (profile.setting_class == nullptr) {
         return;
@@ -101,7 +101,7 @@ void check_class(const SurfaceRequest& request, const surface::RoughnessProfile&
     }
 }
 
-// Throws where there is nothing of what is sought.
+// The dimensions that the request seeks. Throws InputError where the surface has no such feature.
 std::vector<StandardDimension> sought_dimensions(const SurfaceRequest& request, const HeightMap& original) {
     std::vector<StandardDimension> result;
     for (auto& one : dimensions::evaluate_found(original, *request.sought)) {

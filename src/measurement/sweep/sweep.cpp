@@ -34,7 +34,7 @@ std::vector<TomlOverride> with_values(std::vector<TomlOverride> overrides, const
     return overrides;
 }
 
-// A combination's stacks: each with a seed and a folder of its own.
+// The configurations of a combination's stacks, each with a seed and a folder of its own.
 std::vector<Configuration> repeated(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides,
                                     int repeats, const std::filesystem::path& folder) {
     const auto seed = load_configuration(file, overrides).trace.seed;
@@ -65,7 +65,7 @@ SweepResult run_sweep(const std::filesystem::path& file, const std::vector<TomlO
     const Sweep& sweep = *base.sweep;
     const auto needs = sweep.stacks ? Needs::stack : Needs::exposure;
     const auto list = combinations(sweep);
-    // Whatever is wrong with a combination is said before the first is traced.
+    // Every combination is checked before the first is traced.
     for (const auto& values : list) {
         (void)load_configuration(file, with_values(overrides, sweep, values), needs);
     }
@@ -82,7 +82,7 @@ SweepResult run_sweep(const std::filesystem::path& file, const std::vector<TomlO
         spdlog::info("{}", swept.plan());
     }
     Surfaces surfaces;
-    StackRuns runs; // of images: its devices
+    StackRuns runs; // also has the devices for images
     std::vector<SweepRow> rows;
     for (const auto& values : list) {
         const std::string name = sweep_name(sweep, values);

@@ -1,4 +1,4 @@
-// Every combination of what a configuration's [sweep] varies, as images or as stacks.
+// The run of a sweep: every combination of the values in a configuration's [sweep], as images or as stacks.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -15,12 +15,13 @@ namespace vkfv::measurement {
 struct SweepResult {
     Sweep sweep;
     std::vector<SweepRow> rows;
-    std::filesystem::path folder; // that holds a folder for each combination
+    std::filesystem::path folder; // holds a folder for each combination
 };
 
-// Measures what the output folder lacks, a folder a combination, and writes the tables, the contact sheet and the
-// charts (sweep_report.hpp). after_stack gets each stack when it is measured. InputError, also for whatever is wrong
-// with a later combination, before the first is traced; else what an image or a stack throws: the same call continues.
+// Measures the combinations that the output folder lacks, with a folder for each, and writes the tables, the contact
+// sheet and the charts (sweep_report.hpp). after_stack gets each stack when it is measured. Throws InputError before
+// the first combination is traced, also where a later one is wrong, and what an image or a stack throws; the same call
+// continues.
 SweepResult run_sweep(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides, Progress& progress,
                       const std::function<void(const StackResult&)>& after_stack);
 

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr double wanted_ratio = 100; // signal to noise that a user may want; the rays for it follow from the run's
+constexpr double wanted_ratio = 100; // signal to noise for which the table tells the rays
 
 Json read_json(const fs::path& path) {
     auto parsed = Json::parse(read_file(path), nullptr, false);
@@ -40,7 +40,7 @@ Json figures_of(const trace::Image& image, bool ledger_tells) {
     const double mean = flux / pixels, ratio = signal_to_noise(image);
     Json figures;
     figures["signal to noise"] = sweep_figure(ratio);
-    // What is left of the spread of the pixels without the noise.
+    // The variance of the pixels without that of their noise, over the squared mean.
     const double variance = square / pixels / (mean * mean) - 1 - 1 / (ratio * ratio);
     figures["contrast"] = sweep_figure(std::isnan(variance) ? variance : std::sqrt(std::max(0.0, variance)));
     const auto share = ledger_tells ? trace::share_collected(image.ledger) : std::nullopt;
@@ -52,7 +52,8 @@ Json figures_of(const trace::Image& image, bool ledger_tells) {
     return figures;
 }
 
-// What an image of the sweep is known again by: all that decides its bits, and what is written beside it.
+// The digest that tells whether an earlier image is the same: it covers everything that decides the image's bits and
+// the files beside it.
 std::string image_digest(const Configuration& configuration, const std::string& identity, double focal_height) {
     const auto& blur = configuration.diffraction;
     return Digest()

@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double most_picture_pixels = 6e6; // of all combinations
 constexpr int most_picture_side = 400;
-constexpr double brightest = 2; // of a picture's own mean, as on the contact sheet
+constexpr double brightest = 2; // over a picture's own mean, as on the contact sheet
 
 std::string picture_base64(const Grid<float>& picture, std::size_t combinations) {
     const int block = report::block_for(picture.columns, picture.rows,
@@ -40,7 +40,7 @@ std::string picture_base64(const Grid<float>& picture, std::size_t combinations)
     return report::base64(report::grey_png_bytes(bytes));
 }
 
-// File relative to the page, and what the link is called.
+// The links of a combination: a file relative to the page, and the name of the link.
 Json links_of(const Sweep& sweep, const std::string& name) {
     Json links = Json::array();
     if (!sweep.stacks) {
@@ -56,7 +56,7 @@ Json links_of(const Sweep& sweep, const std::string& name) {
     return links;
 }
 
-// "height noise / um" with the unit as a reader writes it; sweep.js does the same.
+// A title with the unit as readers write it, "height noise / µm"; sweep.js does the same.
 std::string title_of(std::string name) {
     for (auto at = name.find(" um"); at != std::string::npos; at = name.find(" um", at)) {
         name.replace(at, 3, " µm");
@@ -97,7 +97,7 @@ void add_table(report::Page& page, const Sweep& sweep, const std::vector<SweepRo
 }
 
 void add_run(report::Page& page, const Sweep& sweep, const std::vector<SweepRow>& rows, const Configuration& base) {
-    std::vector<std::string> devices; // a sweep that went on elsewhere has several
+    std::vector<std::string> devices; // several if the sweep was continued on another machine
     for (const auto& row : rows) {
         if (!row.device.empty() && std::ranges::find(devices, row.device) == devices.end()) {
             devices.push_back(row.device);

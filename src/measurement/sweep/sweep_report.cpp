@@ -28,7 +28,7 @@ struct Extent {
         least = std::min(least, value);
         most = std::max(most, value);
     }
-    // Worth a logarithmic axis.
+    // Tells whether the axis should be logarithmic.
     bool spans_decades() const { return least > 0 && most > 5 * least; }
 };
 
@@ -40,7 +40,7 @@ std::string cell_text(const nlohmann::ordered_json& value) {
                                : value.dump();
 }
 
-// A cell of a CSV file (RFC 4180) or of a Markdown table.
+// The text as a cell of a CSV file (RFC 4180) or of a Markdown table.
 std::string escaped(const std::string& text, bool markdown) {
     std::string result;
     for (const char character : text) {

@@ -15,25 +15,25 @@
 
 namespace vkfv::measurement {
 
-// An image and its figures, under a name in the results, from an earlier run if they are there and whole. runs: its
-// devices are used.
+// Measures an image and its figures under this name in the results, or takes them from an earlier run if they are there
+// and whole. runs: lends its devices.
 SweepRow image_row(const Configuration& configuration, ResultFolder& results, const std::filesystem::path& name,
                    Surfaces& surfaces, StackRuns& runs);
 
-// The stacks of a sweep in the order of their measurement: those of a combination, whose seeds of the trace follow each
-// other, then those of the next.
+// The stacks of a sweep in the order of their measurement: those of a combination, whose trace seeds follow each other,
+// then those of the next combination.
 class SweptStacks {
   public:
     explicit SweptStacks(std::vector<std::vector<Configuration>> rows);
-    SweptStacks(const SweptStacks&) = delete; // it points into its own rows
+    SweptStacks(const SweptStacks&) = delete; // points into its own rows
     SweptStacks& operator=(const SweptStacks&) = delete;
 
-    // A sentence on what is traced for all stacks: "Of 30 stacks the light of 1 is traced, 9 further are made of the
-    // same light, and 20 of the same images".
+    // A sentence that says what is traced: "Of 30 stacks the light of 1 is traced, 9 further are made of the same
+    // light, and 20 of the same images".
     std::string plan() const;
 
-    // The stacks of the next combination: how far their heights agree with each other, and their mean figures.
-    // after_stack gets each when it is measured.
+    // Measures the stacks of the next combination. The row tells how far their heights agree with each other, and their
+    // mean figures. after_stack gets each stack when it is measured.
     SweepRow measure_next(Progress& progress, const std::function<void(const StackResult&)>& after_stack);
 
   private:

@@ -16,9 +16,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double wanted_height_noise = 0.1; // um, that a user may want; the rays for it follow from those of the run
+constexpr double wanted_height_noise = 0.1; // um, noise for which the table tells the rays
 
-// As topography.tif holds them, float32 um: figures of a sweep are those of its files.
+// Heights as topography.tif holds them, float32 um, so that the figures of a sweep are those of its files.
 Grid<double> as_written(const Grid<double>& heights) {
     Grid<double> result = heights;
     for (double& height : result.values) {
@@ -27,7 +27,7 @@ Grid<double> as_written(const Grid<double>& heights) {
     return result;
 }
 
-// Figures of one stack.
+// The figures of one stack.
 Json figures_of(const topography::Deviation& deviation) {
     return report::as_declared("sweep.rows.figures",
                                {{"rms deviation", deviation.rms},
@@ -36,7 +36,7 @@ Json figures_of(const topography::Deviation& deviation) {
                                 {"share measured", deviation.measured_share}});
 }
 
-// Over the repeats; none where one of them has none.
+// The mean figures over the repeats. A figure is null where a repeat has none.
 Json mean_of(const std::vector<Json>& repeats) {
     Json means;
     for (const auto& [name, unused] : repeats.front().items()) {
@@ -49,7 +49,8 @@ Json mean_of(const std::vector<Json>& repeats) {
     return means;
 }
 
-// Root mean square of the points' standard deviations over the repeats, mm; points that one lacks do not count.
+// The root mean square (mm) of the points' standard deviations over the repeats. Points that a repeat lacks do not
+// count.
 double height_noise(const std::vector<Grid<double>>& repeats) {
     const auto count = static_cast<double>(repeats.size());
     double variance = 0, points = 0;
@@ -67,7 +68,8 @@ double height_noise(const std::vector<Grid<double>>& repeats) {
     return std::sqrt(variance / points);
 }
 
-// The contact sheet stretches from 0 to twice the mean: heights from the lowest upwards.
+// Heights as brightness over the lowest, or over 0 if all heights are positive. The contact sheet stretches pictures
+// from 0 to twice their mean.
 Grid<float> picture_of(const Grid<double>& heights) {
     Grid<float> picture(heights.columns, heights.rows);
     double lowest = 0;
