@@ -1,4 +1,4 @@
-// [camera].
+// The table [camera]: its keys and its reader.
 #include "camera/presets.hpp"
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
@@ -18,7 +18,7 @@ using camera::Preset;
 constexpr double ms_per_s = 1e3, percent = 100;
 constexpr std::int64_t fewest_bits = 6, most_bits = 16, most_frames = 10000;
 constexpr double least_full_well = 50, largest_full_well = 1e7; // e-
-constexpr double largest_photo_response = 10;                   // %, beyond which a mean response means little
+constexpr double largest_photo_response = 10;                   // %; beyond it a mean response means little
 
 const ChoiceKey<Preset>
     preset("preset",
@@ -119,7 +119,7 @@ void read_camera(const TomlTable& root, Configuration& configuration) {
     }
     const Section section(*table, camera_keys(), configuration);
     const Preset chosen = section.choice(preset);
-    table->require(preset.name); // decides which other keys must be given
+    table->require(preset.name); // the preset decides which other keys must be given
     auto values = camera::preset_camera(chosen);
     const auto number = [&](const NumberKey& key, double camera::CameraOptions::*member, double unit = 1) {
         return values ? section.number(key, (*values).*member * unit) / unit : section.number(key) / unit;
@@ -128,7 +128,7 @@ void read_camera(const TomlTable& root, Configuration& configuration) {
     CameraOptions& camera = configuration.camera.emplace();
     camera.bit_depth =
         static_cast<int>(values ? section.integer(bit_depth, values->bit_depth) : section.integer(bit_depth));
-    if (values) { // the same charge at the end of another number of bits
+    if (values) { // another number of bits ends at the same charge
         const double range = std::exp2(camera.bit_depth - values->bit_depth);
         values->gain *= range;
         values->offset *= range;

@@ -12,7 +12,8 @@ namespace vkfv {
 
 namespace {
 
-// That every medium has an index over the whole spectrum: else an error at the wavelength, which names the medium.
+// Requires that every medium has an index over the source's whole spectrum. The error stands at the wavelength's key
+// and names the medium.
 void require_indices(const Configuration& configuration, const LightOfSource& light) {
     const auto& instrument = configuration.instrument;
     const auto require = [&](const std::string& part, const optics::Medium& medium, const std::string& key,
@@ -60,7 +61,7 @@ void require_indices(const Configuration& configuration, const LightOfSource& li
     }
 }
 
-// An ideal lens takes no more than a half space of light.
+// Requires that an ideal lens takes no more light than a half space.
 void require_possible_aperture(const TomlTable& root, const Configuration& configuration) {
     const auto& instrument = configuration.instrument;
     const TomlTable objective = root.table("objective");
@@ -75,8 +76,8 @@ void require_possible_aperture(const TomlTable& root, const Configuration& confi
     }
 }
 
-// What is computed of the sum of all light, with the spectrum of what the sources emit. Of this the specimen gets
-// another mixture.
+// Requires one spectrum where the camera or the blur treats the sum of all light, which has the spectrum of all sources
+// together. Sources with different spectra light the specimen unevenly, so that its light is another mixture.
 void require_one_spectrum(const Configuration& configuration) {
     const auto& sources = configuration.instrument.further_sources;
     const auto other = std::ranges::find_if(sources, [](const auto& source) { return source.spectrum.has_value(); });
@@ -106,7 +107,7 @@ void read_instrument(const TomlTable& root, Configuration& configuration) {
     for (const auto& [key, read] : parts) {
         root.attempt(key, [&, read = read] { read(root, configuration); }); // clang 14 captures no binding by name
     }
-    if (root.sound("")) { // what takes all of them together
+    if (root.sound("")) { // checks that need all tables
         root.attempt("source", [&] {
             for (const LightOfSource& light : lights) {
                 require_indices(configuration, light);
@@ -122,9 +123,9 @@ Configuration load_configuration(const std::filesystem::path& file, const std::v
                                  Needs needs) {
     const auto found = given_or_installed(file);
     auto configuration = read_configuration(TomlTable::open(found, overrides), needs);
-    // Beside an installed example nobody can write: its results go to the working directory.
+    // Results do not go beside an installed example, where nobody can write, but to the working directory.
     if (const auto beside = configuration.output_directory.lexically_relative(found.parent_path());
-        found != file && !beside.empty() && *beside.begin() != "..") { // empty: --out, within the working directory
+        found != file && !beside.empty() && *beside.begin() != "..") { // empty: --out is the working directory
         configuration.output_directory = beside;
     }
     return configuration;
@@ -134,7 +135,7 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
     Configuration configuration;
     configuration.file = root.where().file;
     configuration.identity = fmt::format("program = \"vkfv {}\"\n", VKFV_VERSION);
-    root.collect_problems(); // to tell of all at once
+    root.collect_problems(); // all problems are reported together
     read_glass_catalogs(root, configuration);
     read_instrument(root, configuration);
     if (needs != Needs::instrument || root.has("specimen")) {

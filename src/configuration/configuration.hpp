@@ -1,4 +1,5 @@
-// What the user asks for: a TOML file and the command line's overrides, checked and in the units of the inside.
+// The configuration that the user gives, as a TOML file with overrides of the command line: checked, in the program's
+// own units.
 #pragma once
 
 #include "camera/camera.hpp"
@@ -21,57 +22,59 @@
 
 namespace vkfv {
 
-// Which tables a command cannot do without: [specimen] for an exposure, [scan] besides for a stack.
+// The tables that a command requires beside the instrument: [specimen] for an exposure, [specimen] and [scan] for a
+// stack.
 enum class Needs { instrument, exposure, stack };
 
-// How images are blurred after the trace, if at all. Belongs to no traced image (waves do: trace::TraceOptions).
+// The blur of images after the trace, if there is one. Traced images do not depend on it; waves, on which they do
+// depend, are in trace::TraceOptions.
 struct DiffractionOptions {
     bool airy = false;
-    std::filesystem::path file; // else a measured point spread function
-    double pitch = 0;           // of the file's pixels, mm in the object plane
+    std::filesystem::path file; // measured point spread function; empty: none
+    double pitch = 0;           // mm in the object plane, of the file's pixels
 
     bool any() const { return airy || !file.empty(); }
 };
 
-// What `vkfv --sweep` varies: every combination of the values, the first parameter slowest.
+// The parameters that `vkfv --sweep` varies. It takes every combination of their values, with the first parameter
+// slowest.
 struct Sweep {
     struct Parameter {
         std::string key;                 // dotted: "trace.rays"
-        std::string label;               // on axes and in folders' names
+        std::string label;               // name on axes and in folders' names
         std::vector<std::string> values; // TOML texts
     };
-    bool stacks = false;     // else single images
-    double focal_height = 0; // of the images, mm
-    int repeats = 1;         // of each combination, with seeds that follow trace.seed
+    bool stacks = false;     // stacks, or single images
+    double focal_height = 0; // mm, of the single images
+    int repeats = 1;         // of each combination; their seeds follow trace.seed
     std::vector<Parameter> parameters;
 };
 
-// What the plane of the illumination's field stop lets through.
+// The transmission of the plane of the illumination's field stop.
 struct LightFieldDescription {
     specimen::Reflectance pattern;
-    double falloff = 0;      // 1/mm^2, of the square of the distance from the brightest place
-    glm::dvec2 brightest{0}; // mm
+    double falloff = 0;      // 1/mm^2, by the square of the distance from `brightest`
+    glm::dvec2 brightest{0}; // mm, the brightest place
 };
 
-// Where a stack is evaluated. Automatic: on the device that traces, if it has cores of its own.
+// The place where a stack is evaluated. `automatic` means the device that traces, if it has cores of its own.
 enum class EvaluateOn { automatic, host, device };
 
-// Of the texts in ReadKeys, `canonical` is TOML that load_configuration() takes, and `identity` is what the images
-// depend on, a line a key, for telling one stack from another. Of the keys of `canonical` the identity leaves out, with
-// the reason:
-//   diffraction.* but for waves', topography.*, output.directory   blur, evaluate or place the images (a blur that
-//                                    comes before a camera is in it)
+// All settings. Of the texts in ReadKeys, `canonical` is TOML that load_configuration() takes, and `identity` tells one
+// stack from another: it has a line for each key that the images depend on, and the program's version, since another
+// version may trace other bits. The identity leaves out these keys of `canonical`, for the reason beside them:
+//   diffraction.* but for waves', topography.*, output.directory   blur, evaluate or place the images (the identity has
+//                                    a blur that comes before a camera)
 //   trace.batch                      the same bits for any batch size
-//   trace.device, trace.traversal    requests; what they resolve to is in the tracer's description
+//   trace.device, trace.traversal    requests; the tracer's description has what they resolve to
 //   file paths                       the content counts, and stands in its place as a digest
-// The program's version is in it: another version may trace other bits.
 struct Configuration : ReadKeys {
     std::filesystem::path file;
-    optics::GlassCatalog glasses; // of the program and of the file's glass_catalogs; none where no instrument is read
-    optics::InstrumentDescription instrument; // without the light's field
+    optics::GlassCatalog glasses;             // built in and from glass_catalogs; empty if no instrument is read
+    optics::InstrumentDescription instrument; // its light field is not set here
     std::optional<LightFieldDescription> light_field;
-    // Distance (mm) from the back vertex of an objective with a parfocal length to its shoulder, from which the
-    // distance to the tube lens counts.
+    // The distance (mm) from the back vertex of an objective with a parfocal length to its shoulder, where the distance
+    // to the tube lens begins.
     double shoulder = 0;
     std::optional<camera::CameraOptions> camera; // none: images are light
     std::optional<specimen::Description> specimen;
@@ -81,28 +84,29 @@ struct Configuration : ReadKeys {
     DiffractionOptions diffraction;
     topography::TopographyOptions topography;
     EvaluateOn evaluate_on = EvaluateOn::automatic;
-    topography::Registration registration = topography::Registration::none; // of images of another instrument
+    topography::Registration registration = topography::Registration::none; // of the images of another instrument
     std::filesystem::path flatness_file; // a flat measured by the same instrument; empty: no correction
-    topography::Band band;               // form of both comparisons with the truth; filters of the second; unlimited:
-                                         // there is only one
+    // The form holds for both comparisons with the truth, the filters for the second; without limits there is only the
+    // first.
+    topography::Band band;
     std::filesystem::path output_directory;
-    bool stack_file = false;                                // all images in one file, beside the single ones
+    bool stack_file = false;                                // also write all images into one file
     static constexpr double usual_checkpoint_interval = 60; // s
-    double checkpoint_interval = usual_checkpoint_interval; // of an exposure that takes longer; 0: none are kept
+    double checkpoint_interval = usual_checkpoint_interval; // s, for longer exposures; 0: no checkpoints
     scan::PixelType pixel_type = scan::PixelType::float32;  // of the images
-    std::vector<std::string> topography_files;              // names under which the topography is written
-    std::optional<Sweep> sweep; // belongs to no image: neither in `canonical` nor in `identity`
+    std::vector<std::string> topography_files;              // names of the topography's files
+    std::optional<Sweep> sweep;                             // part of neither `canonical` nor `identity`
 };
 
-// Throws InputError.
+// Reads a configuration with overrides of its keys. Throws InputError, with all problems that it finds.
 Configuration load_configuration(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides = {},
                                  Needs needs = Needs::stack);
 
-// The same of a document; relative paths start at its file.
+// Reads the configuration that a document holds; relative paths start at the document's file. Throws InputError.
 Configuration read_configuration(const TomlTable& root, Needs needs = Needs::stack);
 
-// [topography] alone, with these overrides of its keys: for a stack without a configuration; all else has its default.
-// Throws InputError.
+// Reads [topography] from these overrides alone, for a stack without a configuration. All other settings have their
+// defaults. Throws InputError.
 Configuration topography_configuration(const std::vector<TomlOverride>& overrides);
 
 } // namespace vkfv

@@ -1,4 +1,4 @@
-// [illumination], [beam_splitter], [[fold_mirror]] and [interfaces].
+// The tables [illumination], [beam_splitter], [[fold_mirror]] and [interfaces]: their keys and readers.
 #include "configuration/optical_parts.hpp"
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
@@ -15,7 +15,7 @@ using MirrorPath = optics::FoldMirror::Path;
 using InterfaceModel = optics::Interfaces::Model;
 
 constexpr double default_splitter_reflectance = 0.5;
-constexpr double share_rounding = 1e-12; // of 0.7 + 0.3
+constexpr double share_rounding = 1e-12; // covers the rounding of 0.7 + 0.3
 
 enum class IlluminatorKind { prescription, ideal };
 
@@ -151,7 +151,7 @@ const KeyTable& interfaces_keys() {
 void read_illumination(const TomlTable& root, Configuration& configuration) {
     auto& instrument = configuration.instrument;
     const bool is_given = root.has("illumination");
-    // A source that could not be read may stand behind what is given.
+    // A source that could not be read may be the one behind this illumination.
     if (instrument.source.ring && (root.sound("source") || !is_given)) {
         if (is_given) {
             root.fail("illumination",
@@ -180,7 +180,7 @@ void read_beam_splitter(const TomlTable& root, Configuration& configuration) {
     auto& splitter = configuration.instrument.splitter;
     const Section section(root.table_or_empty("beam_splitter"), beam_splitter_keys(), configuration);
     splitter.kind = section.kind(splitter_kind);
-    // A ring light does without its reflection.
+    // A ring light does not need the splitter's reflection, so the reflectance may be 0.
     auto reflectances = splitter_reflectance.range;
     reflectances.minimum_included = configuration.instrument.source.ring || !root.sound("source");
     splitter.reflectance = section.number_in(splitter_reflectance, reflectances);

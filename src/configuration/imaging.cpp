@@ -1,4 +1,4 @@
-// [objective], [cover_glass], [tube_lens] and [detector].
+// The tables [objective], [cover_glass], [tube_lens] and [detector]: their keys and readers.
 #include "camera/sensors.hpp"
 #include "configuration/optical_parts.hpp"
 #include "configuration/ranges.hpp"
@@ -17,7 +17,7 @@ namespace {
 enum class LensKind { prescription, ideal };
 enum class ObjectiveKind { prescription, ideal, telecentric };
 
-constexpr std::int64_t most_pixels = 16384;        // a side; the accumulator stays within 2 GiB
+constexpr std::int64_t most_pixels = 16384;        // on a side, so that the accumulator stays within 2 GiB
 constexpr double default_tube_lens_distance = 100; // mm, in the infinity space
 constexpr double usual_tube_length = 200;          // mm
 constexpr NumberRange magnification_range = {.minimum = 1e-3, .maximum = 1e4};
@@ -189,7 +189,7 @@ const KeyTable& detector_keys() {
 
 namespace {
 
-// By the focal length, or by what the objective is named by.
+// The focal length (mm), as given or as tube length over magnification.
 double read_objective_focal_length(const Section& section) {
     if (!section.has(magnification)) {
         if (section.has(tube_length)) {
@@ -214,12 +214,13 @@ optics::Prescription read_ideal_objective(const Section& section, Configuration&
         objective = optics::with_front(std::move(objective), *distance, medium, index);
     }
     if (const auto distance = section.number_if_given(parfocal_length)) {
-        configuration.shoulder = *distance - (index * length + length); // to the back focal plane
+        configuration.shoulder = *distance - (index * length + length); // from the back focal plane
     }
     return objective;
 }
 
-// Lens, stop in its back focal plane, and a second lens as far behind that.
+// A telecentric lens: an ideal lens, a stop in its back focal plane, and a second lens as far behind the stop as its
+// focal length.
 void read_telecentric_lens(const Section& section, optics::InstrumentDescription& instrument) {
     const double times = section.number(telecentric_magnification);
     const double aperture = section.number(numerical_aperture);
@@ -255,7 +256,7 @@ void read_objective(const TomlTable& root, Configuration& configuration) {
 
 void read_tube_lens(const TomlTable& root, Configuration& configuration) {
     auto& instrument = configuration.instrument;
-    if (!instrument.tube_lens.surfaces.empty()) { // the telecentric lens's own
+    if (!instrument.tube_lens.surfaces.empty()) { // a telecentric objective has set its second lens
         if (root.has("tube_lens")) {
             root.fail("tube_lens", "no [tube_lens] with objective.kind = \"telecentric\", which images by itself",
                       "Remove it, or make the objective an ideal one.");
@@ -292,7 +293,8 @@ void read_cover_glass(const TomlTable& root, Configuration& configuration) {
 
 namespace {
 
-// A camera's pixels may be others, as binning makes them, but its size follows from them.
+// The number of a camera's pixels may be given too, as for binning, but the size of its detector follows from the
+// camera.
 void refuse_two_sizes(const Section& section) {
     if (section.has(pixel_pitch) && section.has(detector_size)) {
         section.fail(pixel_pitch, "either size_mm or pixel_um", "Remove one of them.");
@@ -325,7 +327,7 @@ void read_detector(const TomlTable& root, Configuration& configuration) {
     }
     refuse_two_sizes(section);
     if (section.has(pixel_pitch) || sensor != nullptr) {
-        constexpr double harmless = 1; // where the value is none
+        constexpr double harmless = 1; // keeps the reader going where no value could be read
         const double pitch = sensor != nullptr ? section.number(pixel_pitch, sensor->pixel_um)
                                                : section.number_if_given(pixel_pitch).value_or(harmless);
         instrument.detector_width = pitch * mm_per_um * instrument.detector_pixels.columns;

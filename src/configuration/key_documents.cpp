@@ -42,7 +42,7 @@ const char* type_text(const Key& key) {
     return "";
 }
 
-// "number > 0, mm"
+// The values that a key takes, as "number > 0, mm".
 std::string value_text(const Key& key) {
     std::string text = type_text(key);
     if (const auto allowed = key.allowed(); !allowed.empty()) {
@@ -91,7 +91,7 @@ std::string explanation(const KeyTable& table, const Key& key) {
     return text;
 }
 
-// "|" would end a cell.
+// The text with "|" escaped, which would end a cell of a Markdown table.
 std::string cell(std::string text) {
     for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) {
         text.insert(at, "\\");
@@ -112,7 +112,7 @@ Json schema_of(const Key& key) {
     };
     switch (key.type) {
     case Key::Type::number:
-    case Key::Type::integer: // 1e9 is one too
+    case Key::Type::integer: // TOML integers include 1e9
         numbers(schema);
         break;
     case Key::Type::integer_pair: {
@@ -149,7 +149,8 @@ Json schema_of(const Key& key) {
     return schema;
 }
 
-// Of keys that differ by the table's kind, what any of them takes.
+// Adds a key to a schema. Keys of one name that differ by the table's kind become one property, which allows what any
+// of them takes.
 void add_to_schema(Json& properties, const KeyTable& table, const Key& key) {
     Json schema = schema_of(key);
     std::string description = key.meaning;
@@ -282,7 +283,7 @@ std::string explained(const std::string& key) {
         known.push_back(table->path);
         for (const Key* one : table->keys) {
             known.push_back(dotted(*table, *one));
-            // The last word alone is good enough for a reader.
+            // A key is also found by its last word.
             if (known.back() == key || (one->name == key && !table->path.empty())) {
                 text += (text.empty() ? "" : "\n") + explanation(*table, *one);
             }
@@ -310,7 +311,7 @@ std::string configuration_template() {
             }
             continue;
         }
-        std::string kind; // of the keys that are not commented out
+        std::string kind; // the kind whose keys are not commented out
         for (const Key* key : table->keys) {
             if (key->name == table->kind) {
                 const auto& toml = key->fallback.needed ? key->example : key->fallback.toml;
@@ -351,7 +352,7 @@ std::string configuration_schema() {
     Json required = Json::array();
     for (const KeyTable* table : key_tables()) {
         Json* object = &schema;
-        // Down the dots: a table may stand in another.
+        // The path is followed from dot to dot, since a table may stand in another.
         for (std::string path = table->path; !path.empty();) {
             const auto dot = path.find('.');
             const std::string name = path.substr(0, dot);

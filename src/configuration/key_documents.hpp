@@ -1,4 +1,4 @@
-// The documents of the configuration's keys are written from the keys' declarations (core/keys/key.hpp).
+// Documents of the configuration's keys, which are written from the keys' declarations (core/keys/key.hpp).
 #pragma once
 
 #include "core/keys/key.hpp"
@@ -8,21 +8,20 @@
 
 namespace vkfv {
 
-// All tables, in the order of a configuration; the root first.
+// All tables in the order of a configuration, with the root first.
 const std::vector<const KeyTable*>& key_tables();
 
-// Every key with its unit, what it may be, its default and its sentence: for a terminal, as JSON, and as the page
-// docs/configuration.md.
+// Every key with its unit, values, default and meaning: for a terminal, as JSON, and as the page docs/configuration.md.
 std::string keys_text();
 std::string keys_json();
 std::string keys_markdown();
 
-// The same of one key ("source.radius_mm") or of one table ("source"). Throws InputError if the name is unknown, and
-// names what was most likely meant.
+// The text of one key ("source.radius_mm") or one table ("source") for a terminal. Throws InputError, with the most
+// likely name, if the name is unknown.
 std::string explained(const std::string& key);
 
-// A configuration with every key: those that must be given with an example, all others as comments with their default.
-// It can be traced as it is.
+// A configuration with every key, which can be traced as it is. Required keys have an example, all others stand as
+// comments with their default.
 std::string configuration_template();
 
 // A JSON Schema (draft-07) of configurations, for the completion of editors.

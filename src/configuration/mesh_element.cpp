@@ -1,4 +1,4 @@
-// [[mesh_element]].
+// The table [[mesh_element]]: its keys and its reader.
 #include "configuration/optical_parts.hpp"
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
@@ -65,7 +65,7 @@ std::string digest_of(const optics::Facets& facets) {
         .text();
 }
 
-// The file's mesh in mm.
+// The mesh of the file, converted to mm.
 optics::Facets read_facets(const Section& section, const std::string& dotted_key) {
     const TomlTable& table = section.table();
     std::optional<double> unit;
@@ -140,7 +140,7 @@ void read_mesh_elements(const TomlTable& root, Configuration& configuration) {
             if (section.has(mesh_glass)) {
                 element.glass = read_glass(section, mesh_glass, configuration);
             } else {
-                (void)table.string(mesh_glass.name); // notes that it is missing
+                (void)table.string(mesh_glass.name); // reports that the key is missing
             }
             element.surrounding = read_glass(section, mesh_surrounding, configuration);
         } else if (element.kind == MeshElement::Kind::mirror) {

@@ -83,7 +83,7 @@ void read_glass_catalogs(const TomlTable& root, Configuration& configuration) {
                      [&] { as_named(root, key, file, [&] { configuration.glasses.add(file); }); });
         paths.push_back(toml_quoted(absolute_path(path).string()));
     }
-    // Glasses count by the digests of what uses them, so the identity does without the catalogues.
+    // The identity does without the catalogues, since it has the digests of the parts made of their glasses.
     if (!paths.empty()) {
         configuration.canonical += fmt::format("{} = [{}]\n", key, fmt::join(paths, ", "));
         configuration.places[key] = root.where(key);
@@ -97,7 +97,7 @@ optics::Prescription read_prescription(const Section& section, const TextKey& ke
     if (name.ends_with(".toml")) {
         name = absolute_path(table.file_path(key.name)).string();
     }
-    const auto base = absolute_path(configuration.file).parent_path(); // also of a file in the working directory
+    const auto base = absolute_path(configuration.file).parent_path(); // the file may have no folder in its path
     if (!find_asset(name, folder, base)) {
         section.note(key,
                      fmt::format("{}; {}",
@@ -109,14 +109,14 @@ optics::Prescription read_prescription(const Section& section, const TextKey& ke
         return optics::Prescription();
     }
     optics::Prescription prescription;
-    if (table.sound(glass_catalogs_key)) { // else its glasses may be in the one that could not be read
+    if (table.sound(glass_catalogs_key)) { // otherwise its glasses may be in an unread catalogue
         table.attempt(key.name,
                       [&] { prescription = optics::load_prescription(name, folder, base, configuration.glasses); });
     }
-    if (prescription.surfaces.empty()) { // noted
+    if (prescription.surfaces.empty()) { // the problem is noted already
         return prescription;
     }
-    // A name that means the installed file means it from anywhere; another's path is kept.
+    // The name of an installed file means this file from anywhere. The path of any other file is kept.
     if (!comes_with_program(prescription.file, folder)) {
         name = absolute_path(prescription.file).string();
     }
@@ -130,12 +130,12 @@ optics::Medium read_glass(const Section& section, const TextKey& key, const Conf
     std::optional<optics::Medium> glass;
     try {
         glass = name == optics::Medium::air().name ? optics::Medium::air() : configuration.glasses.find(name);
-    } catch (const InputError& error) { // the catalogues do not agree, or the record is wrong
+    } catch (const InputError& error) { // catalogues disagree, or the glass's record is wrong
         section.note(key, error.problem().expected, error.problem().remedy);
         return optics::Medium::air();
     }
     if (!glass) {
-        if (table.sound(glass_catalogs_key)) { // else it may be in the one that could not be read
+        if (table.sound(glass_catalogs_key)) { // otherwise the glass may be in an unread catalogue
             section.note(key, "the name of a glass, built in or of a catalogue",
                          "Correct the name, or add its catalogue to glass_catalogs.");
         }

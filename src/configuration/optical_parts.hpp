@@ -1,4 +1,4 @@
-// What several tables of the instrument have in common: prescriptions, glasses and placements.
+// Readers that several tables of the instrument share: prescriptions, glasses and placements.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -10,19 +10,19 @@
 
 namespace vkfv {
 
-// Of a lens in the folder of assets that holds its sort ("objectives"): a name there, or a path. A prescription without
-// surfaces stands for one that could not be read, which is noted.
+// Reads a lens, by its name in the folder of assets for its kind ("objectives") or by a path. A lens that could not be
+// read is noted as a problem, and its prescription has no surfaces.
 optics::Prescription read_prescription(const Section& section, const TextKey& key, const Configuration& configuration,
                                        const std::string& folder, const std::optional<std::string>& fallback = {});
 
-// By the name of a glass, or of air; air for a glass that is not known, which is noted.
+// Finds a glass, or air, by its name. An unknown glass is noted as a problem, and air stands for it.
 optics::Medium read_glass(const Section& section, const TextKey& key, const Configuration& configuration);
 
-// Where a part stands: these keys follow those of its own in its table.
+// The placement of a part. Its keys follow the part's own keys in the part's table.
 std::vector<const Key*> with_placement(std::vector<const Key*> keys);
 optics::Placement read_placement(const Section& section);
 
-// The key of the glasses' catalogues, which others ask whether it is sound.
+// The key of the glass catalogues. Readers of glasses ask whether it could be read.
 inline constexpr const char* glass_catalogs_key = "glass_catalogs";
 
 } // namespace vkfv

@@ -1,4 +1,4 @@
-// [output], and [sweep] with its parameters.
+// The tables [output], and [sweep] with its parameters: their keys and readers.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 
@@ -37,7 +37,7 @@ std::vector<Key::Choice> choices_of_formats() {
     return choices;
 }
 
-// "a/./b/" as "a/b".
+// The path without needless dots and separators: "a/./b/" becomes "a/b".
 std::filesystem::path without_dots(const std::filesystem::path& path) {
     const auto normal = path.lexically_normal();
     return normal.has_filename() || normal == normal.root_path() ? normal : normal.parent_path();
@@ -124,7 +124,7 @@ void read_output(const TomlTable& root, Configuration& configuration) {
     const Section section(table, output_keys(), configuration);
     configuration.output_directory =
         without_dots(table.optional_file_path(directory.name).value_or(configuration.file.parent_path() / "vkfv-out"));
-    // The canonical text lies in the folder itself, wherever that is moved to.
+    // The canonical text lies in the folder itself, so that its "." stays right wherever the folder is moved.
     section.record_reference(directory, ".");
     const std::vector<std::string> formats =
         section.has(surfaces) ? table.value_texts(surfaces.name) : std::vector{toml_quoted("tiff"), toml_quoted("x3p")};
@@ -153,7 +153,7 @@ void read_output(const TomlTable& root, Configuration& configuration) {
     }
 }
 
-// It belongs to no image and to no stack: nothing of it is written down.
+// Reads [sweep]. No image and no stack depends on it, so nothing of it is recorded.
 void read_sweep(const TomlTable& root, Configuration& configuration) {
     const auto table = root.optional_table("sweep");
     if (!table) {
@@ -182,7 +182,7 @@ void read_sweep(const TomlTable& root, Configuration& configuration) {
         if (std::ranges::find(sweep.parameters, parameter.key, &Sweep::Parameter::key) != sweep.parameters.end()) {
             one.fail(parameter_key.name, "each key once", "Put all values into one parameter.");
         }
-        // The last word of the key, unless there is a better one.
+        // Without a label, the last word of the key is the label.
         parameter.label = one.optional_string(label.name).value_or(parameter.key.substr(parameter.key.rfind('.') + 1));
         const auto is_control = [](char character) { return std::iscntrl(static_cast<unsigned char>(character)) != 0; };
         if (parameter.label.find_first_of("/\\=") != std::string::npos ||

@@ -1,4 +1,5 @@
-// [specimen.reflectance] and [illumination.field]: patterns over a plane.
+// The tables [specimen.reflectance] and [illumination.field], which describe patterns over a plane: their keys and
+// readers.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "core/mathematics/units.hpp"
@@ -29,7 +30,7 @@ struct PatternKeys {
         return all;
     }
 
-    bool light; // of the light's field, else of the specimen
+    bool light; // the pattern is of the light's field, not of the specimen
     ChoiceKey<Kind> kind =
         for_example("\"noise\"", ChoiceKey<Kind>("kind", kinds(light), needed,
                                                  light ? "The pattern." : "How the reflectance varies."));

@@ -1,4 +1,4 @@
-// [scan].
+// The table [scan]: its keys and its reader.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 

@@ -1,4 +1,4 @@
-// [source], or several [[source]], and [source.spectrum].
+// The tables [source] or [[source]], and [source.spectrum]: their keys and readers.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "core/files/digest.hpp"
@@ -20,7 +20,7 @@ namespace {
 enum class SourceKind { disc, rectangle, ring };
 enum class SpectrumKind { monochromatic, lines, gaussian, led, table };
 
-constexpr double least_flux = 1e-15, largest_flux = 1e15; // W; what falls on a pixel stays a float32
+constexpr double least_flux = 1e-15, largest_flux = 1e15; // W; the light of a pixel stays within a float32
 
 const ChoiceKey<SourceKind> kind("kind",
                                  {{SourceKind::disc, "disc", "a Lambertian disc behind an illuminator"},
@@ -141,7 +141,7 @@ optics::Spectrum read_led(const Section& section) {
     }
     const double peak = named != nullptr ? section.number(led_peak, named->peak_um) : section.number(led_peak);
     const double width = named != nullptr ? section.number(led_width, named->full_width_um) : section.number(led_width);
-    if (!(width < peak)) { // tells nanometres from micrometres too
+    if (!(width < peak)) { // also finds nanometres given as micrometres
         section.fail(led_width, fmt::format("a width below the peak's wavelength, {:.6g} um", peak),
                      "Give both in um: 0.035 for 35 nm.");
     }
@@ -186,7 +186,7 @@ optics::Spectrum read_spectrum_table(const Section& section) {
     }
     case SpectrumKind::gaussian: {
         const double middle = section.number(centre);
-        // A wider one is no spectrum about the centre, and tells nanometres from micrometres.
+        // A wider spectrum is not one about its centre. The limit also finds nanometres given as micrometres.
         const NumberRange widths = {.minimum = 0, .maximum = middle, .minimum_included = false};
         return optics::Spectrum::gaussian(
             middle,
@@ -227,9 +227,10 @@ LightOfSource read_spectrum(const Section& source, Configuration& configuration)
     return light;
 }
 
-// A flat ring, as data sheets state it. Seen from the focus it is the band about its middle line that is as wide as the
-// ring's face is foreshortened: a Lambertian face lights the focus by the solid angle that it covers there, which
-// differs between both by the square of the width (0.4 % of a ring of 30 to 34 mm, 3.5 % of one of 40 to 60 mm).
+// Reads a flat ring with the figures of data sheets. Seen from the focus, the ring is taken as a band about its middle
+// line, as wide as the ring's foreshortened face. A Lambertian face lights the focus by the solid angle that it covers
+// there, in which ring and band differ by the square of the width (0.4 % for a ring of 30 to 34 mm, 3.5 % for a ring of
+// 40 to 60 mm).
 void read_flat_ring(const Section& source, optics::RingLightDescription& ring) {
     for (const NumberKey* key : {&ring_distance, &width}) {
         if (source.has(*key)) {
@@ -284,7 +285,7 @@ struct ReadSource {
     LightOfSource light;
 };
 
-// has_illuminator: whether another source stands behind it.
+// has_illuminator: a source read before stands behind the illuminator.
 ReadSource read_one(const Section& section, bool has_illuminator, Configuration& configuration) {
     optics::SourceDescription source;
     source.key = section.table().path();
@@ -348,7 +349,7 @@ std::vector<LightOfSource> read_source(const TomlTable& root, Configuration& con
     }
     std::vector<LightOfSource> lights;
     if (read.empty()) {
-        return lights; // what is wrong was noted
+        return lights; // the problems are noted already
     }
     std::vector<optics::Spectrum::Part> parts;
     for (const auto& [source, light] : read) {
@@ -362,7 +363,7 @@ std::vector<LightOfSource> read_source(const TomlTable& root, Configuration& con
             source.spectrum = light.spectrum;
         }
     }
-    // What stands behind the illuminator is the first.
+    // The source behind the illuminator comes first.
     std::stable_partition(read.begin(), read.end(), [](const ReadSource& one) { return !one.source.ring; });
     instrument.source = read.front().source;
     for (std::size_t further = 1; further < read.size(); ++further) {

@@ -1,4 +1,5 @@
-// [specimen], [specimen.roughness], [specimen.material] and [[specimen.material.lobe]]; reflectance.cpp has its map.
+// The tables [specimen], [specimen.roughness], [specimen.material] and [[specimen.material.lobe]]: their keys and
+// readers. The reader of [specimen.reflectance] is in pattern.cpp.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "core/files/assets.hpp"
@@ -23,7 +24,8 @@ namespace vkfv {
 
 namespace {
 
-// [specimen]: the kind, and all keys of the kinds. Keys that kinds share are here once, with the names of all of them.
+// The keys of [specimen]: the kind, and the keys of all kinds. A key that kinds share is here once, with the names of
+// its kinds.
 class SpecimenKeys {
   public:
     SpecimenKeys() : kind("kind", options(), needed, "What the specimen is, unless standard says it.") {
@@ -111,14 +113,14 @@ const RoughnessKeys& roughness_keys() {
 
 using physics::scatter_registry;
 
-// "asymmetry: 0 is Lambertian" as a sentence.
+// Words as a sentence: "asymmetry: 0 is Lambertian" becomes "Asymmetry: 0 is Lambertian."
 std::string sentence_of(std::string_view words) {
     std::string sentence(words);
     sentence.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence.front())));
     return sentence + ".";
 }
 
-// The keys of a lobe: a scatter model, its parameters, and what share of the light it has.
+// The keys of a lobe: a scatter model, the model's parameters, and the lobe's share of the light.
 struct LobeKeys {
     LobeKeys(std::optional<std::size_t> default_model, NumberKey share_key, KeyTable lobe_table)
         : scatter("scatter", options(), default_model, "How light is scattered."), share(std::move(share_key)),
@@ -151,7 +153,7 @@ struct LobeKeys {
         return list;
     }
 
-    // Models share a key whose parameter is the same; one of the same name is the same in all.
+    // Models share the key of a parameter, since parameters of one name are the same in all models.
     void declare(const std::string& model, const physics::ScatterParameter& parameter) {
         const auto known = std::ranges::find(parameters, parameter.name, &NumberKey::name);
         if (known != parameters.end()) {
@@ -163,8 +165,8 @@ struct LobeKeys {
                                                          parameter.fallback, sentence_of(parameter.meaning))));
     }
 
-    ChoiceKey<std::size_t> scatter;   // index in the registry
-    std::deque<NumberKey> parameters; // of all models
+    ChoiceKey<std::size_t> scatter;   // index into scatter_registry
+    std::deque<NumberKey> parameters; // of all models together
     NumberKey sq = of_kinds(
         {"abg", "harvey-shack"},
         NumberKey(
@@ -255,8 +257,8 @@ bool is_of(const Key& key, const std::string& model) {
     return key.kinds.empty() || std::ranges::find(key.kinds, model) != key.kinds.end();
 }
 
-// Columns over the wavelength, by two or more keys of the configuration or by a file, whose first column is
-// wavelength_um. Nothing if neither is given.
+// The keys of columns over the wavelength. The columns stand under two or more keys of the configuration, or in a file
+// whose first column is wavelength_um. There are no columns if neither is given.
 struct SpectralKeys {
     const NumbersKey* wavelengths;
     std::vector<const NumbersKey*> values;
@@ -344,7 +346,7 @@ specimen::TabulatedBsdf read_tabulated(const Section& section, const LobeKeys& k
     return bsdf;
 }
 
-// A scatter model, its parameters, and what changes it with the wavelength. Keys of another model are refused.
+// Reads a scatter model, its parameters, and their changes with the wavelength. Refuses keys of another model.
 specimen::Lobe read_lobe(const Section& section, const LobeKeys& keys) {
     const auto& model = scatter_registry[section.choice(keys.scatter)];
     section.table().require(keys.scatter.name);
@@ -384,7 +386,8 @@ specimen::Lobe read_lobe(const Section& section, const LobeKeys& keys) {
     return lobe;
 }
 
-// The lobe, and where the height of the surface's finish parts its light a mirror's beside it.
+// Reads the lobe of a table. If the height of the surface's finish is given, part of its light goes to a mirror lobe
+// beside it.
 std::vector<specimen::Lobe> read_lobes(const Section& section, const LobeKeys& keys) {
     specimen::Lobe lobe = read_lobe(section, keys);
     lobe.weight = section.number(keys.share);
@@ -407,7 +410,7 @@ std::vector<specimen::Lobe> read_lobes(const Section& section, const LobeKeys& k
     return lobes;
 }
 
-// One lobe in the table itself, or several in [[specimen.material.lobe]].
+// Reads one lobe from the table itself, or several from [[specimen.material.lobe]].
 specimen::Material read_material(const TomlTable& table, ReadKeys& read) {
     const Section section(table, material_keys().table, read);
     const auto lobe_tables = table.optional_tables("lobe");
@@ -478,8 +481,8 @@ specimen::Roughness read_roughness(const TomlTable& table, const TomlTable& spec
     return roughness;
 }
 
-// What [specimen] has not itself, of the standard that it names. The canonical text and the identity have the
-// standard's own keys, so that neither depends on where it was found.
+// Completes [specimen] by the keys of the standard that it names. The canonical text and the identity have these keys,
+// so that neither depends on the place where the standard was found.
 void take_standard(const TomlTable& table, const Configuration& configuration) {
     constexpr const char* folder = "specimens";
     const std::string& key = specimen_keys().standard.name;

@@ -1,4 +1,4 @@
-// [stage].
+// The table [stage]: its keys and its reader.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "core/mathematics/units.hpp"
@@ -76,7 +76,7 @@ glm::dvec2 pair(const Section& section, const NumbersKey& key) {
     return {values[0], values[1]};
 }
 
-// Two lists that go together.
+// Reads two lists that must be given together.
 std::pair<std::vector<double>, std::vector<double>> lists(const Section& section, const NumbersKey& first,
                                                           const NumbersKey& second) {
     if (section.has(first) != section.has(second)) {

@@ -1,5 +1,5 @@
-// The tables of the configuration, each with its keys and its reader in a file of its own. Readers throw InputError, or
-// note it while problems are collected.
+// The tables of the configuration, each with its keys and its reader in a file of its own. Readers throw InputError;
+// while problems are collected, they note it.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -12,7 +12,7 @@ namespace vkfv {
 
 void read_glass_catalogs(const TomlTable& root, Configuration& configuration);
 
-// The wavelengths of a source, and the key that they stand at.
+// The wavelengths of a source, and the key at which they are given.
 struct LightOfSource {
     std::string key;
     optics::Spectrum spectrum;
@@ -63,7 +63,7 @@ const KeyTable& output_keys();
 const KeyTable& sweep_keys();
 const KeyTable& sweep_parameter_keys();
 
-// The keys of [specimen] and of the tables in it.
+// The tables of keys for [specimen] and for the tables in it.
 std::vector<const KeyTable*> specimen_key_tables();
 
 } // namespace vkfv

@@ -1,4 +1,4 @@
-// [topography] and [diffraction].
+// The tables [topography] and [diffraction]: their keys and readers.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "core/files/digest.hpp"
@@ -20,7 +20,7 @@ constexpr std::int64_t most_parts = 16;
 
 const topography::TopographyOptions defaults;
 
-// The names that the evaluation has for the values of an enumeration.
+// A key whose choices are the evaluation's names for the values of an enumeration.
 template <class Value>
 ChoiceKey<Value> named(std::string name, const std::vector<std::string>& names, Value (*value_of)(std::string_view),
                        Value fallback, std::string meaning) {
@@ -121,7 +121,7 @@ const TextKey form = without_influence(
             "plane of their "
             "deviation."));
 
-// The specimen's kind chooses, unless the form is given.
+// Reads the form. If none is given, the specimen's kind chooses it.
 surface::Form read_form(const Section& section, const Configuration& configuration) {
     const auto& specimen = configuration.specimen;
     const auto name = section.text_if_given(form);
@@ -143,7 +143,7 @@ surface::Form read_form(const Section& section, const Configuration& configurati
 
 enum class DiffractionModel { none, airy, file, waves };
 
-// What images depend on is the key `cells`, which waves alone have.
+// The identity needs no model, since only waves have the key `cells`, which the identity has.
 const ChoiceKey<DiffractionModel> model = without_influence(ChoiceKey<DiffractionModel>(
     "model",
     {{DiffractionModel::none, "none", "images as rays make them"},
@@ -173,8 +173,8 @@ const IntegerKey tiles =
     of_kinds({"waves"}, IntegerKey("tiles", 0, most_tiles, 0,
                                    "Filters across the field, an odd number, each of its own point and blended in "
                                    "between; 0: one where the axis' filter is good enough everywhere, else 3 to 9."));
-// This limit is no part of an image's identity: images depend only on the resulting number of parts, which is
-// (trace/interface/tracer_identity.hpp).
+// The memory is not part of an image's identity. Images depend only on the number of parts that it allows, which the
+// identity has (trace/interface/tracer_identity.hpp).
 const NumberKey most_memory = of_kinds(
     {"waves"}, without_influence(NumberKey("most_memory_gib", NumberRange::at_least(0), 0.0,
                                            "Most device memory for light of waves; 0: four fifths of what there is.")));
@@ -238,7 +238,7 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     options.repair_outliers = section.boolean(repair_outliers);
     configuration.registration = section.choice(registration);
     configuration.evaluate_on = section.choice(evaluate_on);
-    // "none", so that --set can take it back.
+    // The word "none" lets --set remove a flat.
     if (const auto name = table.optional_string(flatness_file.name); name && *name != "none") {
         configuration.flatness_file = section.file(flatness_file);
     }
@@ -263,7 +263,7 @@ void read_diffraction(const TomlTable& root, Configuration& configuration) {
         configuration.diffraction.file = section.file(point_spread_file);
         configuration.diffraction.pitch = from_um(section.number(point_spread_pitch));
     }
-    if (configuration.camera && configuration.diffraction.any()) { // whose images it is part of
+    if (configuration.camera && configuration.diffraction.any()) { // the camera's images contain the blur
         configuration.identity += fmt::format("{} = {}\n", model.name, toml_quoted(model.name_of(what)));
         if (what == DiffractionModel::file) {
             configuration.identity += fmt::format(

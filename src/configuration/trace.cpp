@@ -1,4 +1,4 @@
-// [trace].
+// The table [trace]: its keys and its reader.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 
@@ -9,8 +9,8 @@ namespace {
 using trace::Estimator;
 using trace::Traversal;
 
-constexpr std::int64_t most_rays = 1'000'000'000'000; // 1e12: an hour a picture on the fastest device
-constexpr std::int64_t most_bounces = 64;             // a Lambertian pit loses all but 1e-3 of its light in ten
+constexpr std::int64_t most_rays = 1'000'000'000'000; // an hour for an image on the fastest device
+constexpr std::int64_t most_bounces = 64;             // a Lambertian pit keeps 1e-3 of its light after ten
 
 const IntegerKey rays("rays", 1, most_rays, 10'000'000, "Rays launched per image; 1e9 is an integer too.");
 const IntegerKey seed("seed", 0, largest_seed, 1, "Seed of all random numbers of the trace.");
@@ -67,8 +67,8 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
     auto& trace = configuration.trace;
     trace.rays = static_cast<std::uint64_t>(section.integer(rays));
     trace.seed = static_cast<std::uint32_t>(section.integer(seed));
-    if (auto& camera = configuration.camera) {        // repeats with other seeds of the trace have the same patterns
-        constexpr std::uint32_t golden = 0x9E3779B9u; // no small seeds make the same sum
+    if (auto& camera = configuration.camera) {        // the camera's fixed patterns do not depend on trace.seed
+        constexpr std::uint32_t golden = 0x9E3779B9u; // keeps sums of small seeds apart
         camera->noise_seed = camera->seed + golden * trace.seed;
     }
     trace.max_bounces = static_cast<int>(section.integer(max_bounces));
@@ -105,7 +105,8 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
     trace.batch = static_cast<std::uint64_t>(section.integer(batch));
     if (const auto selector = table.optional_string(device.name)) {
         trace.device = *selector;
-        // The first alone: how many work at a time is the run's, and the results are those of one.
+        // Only the first device is recorded. The number of devices at work belongs to the run, and the results are
+        // those of one device.
         if (*selector != "all") {
             section.record_reference(device, selector->substr(0, selector->find(',')));
         }
