@@ -16,7 +16,7 @@ struct BenchOptions {
     int runs = 5;
     std::vector<std::string> parts = {"stages"};
     bool quick = false;
-    std::filesystem::path peer; // the program vkfv_bench_peer
+    std::filesystem::path peer; // path of the program vkfv_bench_peer
     std::string commit;
 };
 

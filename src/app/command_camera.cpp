@@ -21,7 +21,7 @@ struct CameraCommandOptions {
     bool images = false;
 };
 
-constexpr int fewest_pixels = 32, most_pixels = 4096; // a side
+constexpr int fewest_pixels = 32, most_pixels = 4096; // on a side
 constexpr int fewest_averaged = 2, most_averaged = 1000;
 
 } // namespace
@@ -56,17 +56,18 @@ Command camera_command() {
 
 namespace {
 
-// The descriptor file of the EMVA 1288 reference implementation: it lists the images by sets of one exposure time in ns
-// and one number of photons a pixel. That program takes a set of two images for a pair, and refuses a second pair or a
-// second stack of the same numbers. The rounds about the largest variance have some, of which the first is listed.
+// The descriptor file of the EMVA 1288 reference implementation, which lists the images in sets of one exposure time
+// (ns) and one number of photons a pixel. That implementation takes a set of two images for a pair, and refuses a
+// second pair or a second stack with the same numbers. Images about the largest variance repeat such numbers, and only
+// the first set of them is listed.
 class DescriptorFile {
   public:
-    // averaged: images of a stack.
+    // averaged: the number of images in a stack.
     DescriptorFile(int bits, int columns, int rows, int averaged)
         : stacks_are_pairs_(averaged == 2),
           text_(fmt::format("# Images of a camera that vkfv simulates\nv 3.0\nn {} {} {}\n", bits, columns, rows)) {}
 
-    // Images of a set follow each other. file: relative to the descriptor's folder.
+    // Adds an image. The images of a set must follow each other. file: relative to the descriptor's folder.
     void add(const camera::TakenImage& what, const std::string& file) {
         if (what.file.ends_with("_a") || what.series != series_) {
             series_ = what.series;
@@ -85,9 +86,9 @@ class DescriptorFile {
   private:
     bool stacks_are_pairs_;
     std::string text_;
-    std::string series_;                          // of the last image
-    bool listed_ = false;                         // whether its set is
-    std::set<std::pair<bool, std::string>> sets_; // whether it is a pair, and the set's line
+    std::string series_;                          // series of the last image
+    bool listed_ = false;                         // whether the last image's set is listed
+    std::set<std::pair<bool, std::string>> sets_; // whether a set is a pair, and the line that begins it
 };
 
 } // namespace

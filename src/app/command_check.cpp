@@ -42,7 +42,7 @@ Command check_command() {
 
 void run_check(const CommandOptions& options) {
     const bool with_forecast = options.of<CheckOptions>().forecast;
-    if (options.out && !with_forecast) { // it writes nothing
+    if (options.out && !with_forecast) { // only a forecast depends on the folder
         refuse_argument("--out with --check", "--forecast beside it, which looks at the disk of that folder",
                         "Leave it out, add --forecast, or give it to --stack.");
     }
@@ -50,7 +50,7 @@ void run_check(const CommandOptions& options) {
         load_configuration(options.file, options.overrides, with_forecast ? Needs::exposure : Needs::instrument);
     auto report = measurement::instrument_report(configuration, options.file);
     if (const auto cells = report.json.find("wave_cells"); cells != report.json.end()) {
-        // The report is kept from run to run; devices come and go.
+        // These warnings are not in the report, since the report is kept from run to run while devices may change.
         append(report.warnings, measurement::wave_warnings_of_device(configuration, cells->get<int>(),
                                                                      report.json["wave_tiles"].get<int>()));
     }

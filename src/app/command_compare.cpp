@@ -11,7 +11,7 @@ namespace {
 
 struct CompareOptions {
     std::vector<std::filesystem::path> files; // measurements, then the truth
-    bool align = false;                       // the lateral shift is removed
+    bool align = false;                       // remove the lateral shift
 };
 
 } // namespace

@@ -56,14 +56,14 @@ Command import_command() {
 
 namespace {
 
-// Both in mm, as designers state them: the focal length in air, and the distance from the last vertex to the
-// focal point in the medium behind it. Infinite: afocal.
+// Focal lengths in mm, as designers state them: the effective one in air, and the distance from the last vertex to the
+// focal point in the medium behind the lens. They are infinite for an afocal lens.
 struct FocalLengths {
     double effective = 0;
     double back = 0;
 };
 
-// Tilts and decentres do not count in paraxial optics, but the way along the axis does.
+// Paraxial optics ignore the tilts and decentres of coordinate breaks, but count the distance along the axis.
 FocalLengths focal_lengths(const optics::Prescription& lens, double wavelength_um) {
     optics::RayTransfer transfer;
     double index = lens.medium_before.index(wavelength_um);

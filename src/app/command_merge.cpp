@@ -12,7 +12,7 @@ namespace vkfv::app {
 namespace {
 
 struct MergeOptions {
-    std::vector<std::filesystem::path> folders; // the merged stack's, then shards
+    std::vector<std::filesystem::path> folders; // the merged stack's folder, then those of shards
 };
 
 } // namespace

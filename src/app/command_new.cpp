@@ -15,7 +15,7 @@ namespace vkfv::app {
 namespace {
 
 struct NewOptions {
-    std::string objective, camera, light, led, specimen; // empty: asked for, or usual
+    std::string objective, camera, light, led, specimen; // empty: ask, or take the usual one
     std::optional<double> tube_length, working_distance, parfocal_length;
 };
 
@@ -23,7 +23,7 @@ struct Question {
     std::string NewOptions::*answer;
     const char* option;
     const char* value;
-    const char* asks; // a sentence without its stop
+    const char* asks; // sentence without its full stop
     const char* usual;
 };
 
@@ -44,7 +44,7 @@ Option length_option(std::string name, std::string description, std::optional<do
     return {.name = std::move(name), .value = "MM", .description = std::move(description), .target = into(length)};
 }
 
-// Asks a person at a terminal for each figure that no option gives; an empty line takes the usual one.
+// Asks for each figure that no option gives, if a person sits at a terminal. An empty answer takes the usual one.
 void ask(NewOptions& own) {
     const bool at_terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1;
     for (const Question& question : questions) {
@@ -128,7 +128,7 @@ Command new_command() {
             .run = run_new,
             .example = "vkfv new --objective 20x/0.45 --camera IMX250 --light ring --specimen step:10um > my.toml",
             .about_vkfv = false,
-            .also_option = false}; // its --camera is another than `vkfv --camera`
+            .also_option = false}; // its --camera differs from `vkfv --camera`
 }
 
 } // namespace vkfv::app

@@ -16,7 +16,7 @@ namespace vkfv::app {
 namespace {
 
 struct OpticsOptions {
-    std::optional<double> reach; // mm
+    std::optional<double> reach; // mm above and below best focus
 };
 
 } // namespace

@@ -19,7 +19,7 @@ struct StackOptions {
     std::optional<scan::Shard> shard;
 };
 
-// "2/8": the second of eight.
+// Reads "2/8", the second of eight shards.
 void take_shard(CommandOptions& options, const std::string& text) {
     int number = 0, count = 0;
     const char* end = text.data() + text.size();

@@ -13,11 +13,11 @@ namespace vkfv::app {
 
 namespace {
 
-// Of a stack that vkfv did not make; lengths in mm.
+// Options for a stack that vkfv did not make; lengths in mm.
 struct TopographyOptions {
     std::optional<double> z_step;      // negative: the images descend
-    std::optional<double> z_start;     // of the first image; none: 0
-    std::optional<int> channel, frame; // of a file of several, from 1
+    std::optional<double> z_start;     // height of the first image; none: 0
+    std::optional<int> channel, frame; // from 1, in files of several
     std::optional<std::filesystem::path> dark, flat_field;
     std::optional<std::uint64_t> shuffle; // seed of the order in which images are taken
 };
@@ -85,10 +85,10 @@ measurement::EvaluatedStack evaluate_own(const CommandOptions& options) {
                                             .shuffle = own.shuffle});
 }
 
-constexpr double tolerance = 0.01; // by which an option may differ from what a file states before both are told
+constexpr double tolerance = 0.01; // largest relative difference of option and file without a warning
 
-// The option, else what the file states. Where they differ by more than `tolerated` the option counts, and both are
-// told. Lengths are in mm.
+// The value of the option, or without one the value that the file states. Where the two differ by more than
+// `tolerated`, the option counts and the log warns. Lengths are in mm.
 std::optional<double> given_or_stated(const std::string& name, const std::optional<double>& given,
                                       const std::optional<double>& stated, const std::string& by, double tolerated) {
     if (given && stated && std::abs(*given - *stated) > tolerated) {
@@ -101,7 +101,8 @@ std::optional<double> given_or_stated(const std::string& name, const std::option
     return given ? given : stated;
 }
 
-// The evaluation takes one pitch for both axes, so one that is stated for pixels that are not square is not used.
+// The pitch (mm) that the file states. The evaluation takes one pitch for both axes, so the pitch of pixels that are
+// not square is not used.
 std::optional<double> stated_pitch(const scan::StatedSeries& stated) {
     if (!stated.pitch_x || !stated.pitch_y) {
         return std::nullopt;
@@ -137,7 +138,7 @@ measurement::EvaluatedStack evaluate_foreign(const CommandOptions& options) {
             "Give --z_step_um UM, the step from image to image (negative if they descend), and --pitch_um UM > 0, "
             "the distance of the pixels on the specimen.");
     }
-    // A start is compared by the step, since a start of 0 has no relative difference.
+    // The tolerance for the start is a share of the step, since a start of 0 has no relative difference.
     const double start =
         given_or_stated("--z_start_um", own.z_start, stated.z_start, z_by, tolerance * std::abs(*z_step)).value_or(0);
     if (!std::isfinite(start)) {
@@ -153,7 +154,7 @@ measurement::EvaluatedStack evaluate_foreign(const CommandOptions& options) {
     if (!options.out && !own.shuffle) {
         refuse_argument("no --out", "a folder for the results of a stack that vkfv did not make", "Give --out FOLDER.");
     }
-    // The keys of [topography] alone; --out is no key of it.
+    // The overrides are of keys of [topography], which --out is not.
     auto overrides = options.overrides;
     std::erase_if(overrides, [](const TomlOverride& given) { return given.origin == "--out"; });
     return measurement::evaluate_images(series, {.images = options.file,
@@ -172,7 +173,7 @@ void run_topography(const CommandOptions& options) {
     const bool made_here = std::filesystem::exists(options.file / "stack.toml");
     auto stack = made_here ? evaluate_own(options) : evaluate_foreign(options);
     if (shuffle && !options.out) {
-        // A control is no result of the stack.
+        // A shuffled stack is a control, so its heights are not written beside the stack.
         fmt::print("{}images shuffled, nothing written\n", measurement::summary(stack.evaluation));
         return;
     }

@@ -15,9 +15,9 @@ constexpr const char* best_focus = "best-focus";
 
 struct TraceRaysOptions {
     std::filesystem::path rays;
-    bool float_precision = false; // on the device
-    bool apertures = true;        // stop rays
-    bool from_best_focus = false; // z of the rays; else from the paraxial object plane
+    bool float_precision = false; // trace in float on the device
+    bool apertures = true;        // apertures stop rays
+    bool from_best_focus = false; // origin of the rays' z; otherwise the paraxial object plane
 };
 
 } // namespace

@@ -46,7 +46,7 @@ bool has(const fs::path& folder, std::string_view name) {
     return fs::exists(folder / name, none);
 }
 
-// Those that hold a list of checksums or a stack: the folder itself and those below it, in order.
+// The folders that hold a list of checksums or a stack, in order: the folder itself and all folders below it.
 std::vector<fs::path> result_folders(const fs::path& folder) {
     std::vector<fs::path> folders;
     const auto add = [&](const fs::path& candidate) {
@@ -65,7 +65,7 @@ std::vector<fs::path> result_folders(const fs::path& folder) {
     return folders;
 }
 
-// Whether the configuration of a stack is among what is damaged.
+// Tells whether the damaged files include the configuration of a stack.
 bool lacks_configuration(const Check& check) {
     return std::ranges::any_of(check.damages,
                                [](const Damage& damage) { return damage.file == scan::configuration_name; });

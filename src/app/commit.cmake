@@ -1,5 +1,6 @@
-# cmake -DSOURCE=... -DOUT=commit.h -P commit.cmake: the commit that is built, with "and changes" where files differ from
-# it; outside of a repository what VKFV_COMMIT in the environment says, or "unknown". A file that would be the same is left alone.
+# Writes the commit that is built: cmake -DSOURCE=... -DOUT=commit.h -P commit.cmake. The commit has "and changes"
+# behind it where files differ from it. Outside of a repository it is VKFV_COMMIT of the environment, or "unknown". A
+# file that would not change is left alone.
 set(commit unknown)
 if(DEFINED ENV{VKFV_COMMIT})
   set(commit $ENV{VKFV_COMMIT})

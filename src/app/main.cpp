@@ -1,4 +1,4 @@
-// The only main(). Every failure ends here, as a message on standard error and an exit code.
+// The only main(). It reports every failure as a message on standard error and an exit code.
 #include "app/commands.hpp"
 #include "app/version.hpp"
 #include "command_line/command_line.hpp"
@@ -37,14 +37,15 @@ int report_lost_output() {
                   run_failed);
 }
 
-// What a command says is part of what it was asked for.
+// Tells whether all output was written. A command that loses output has failed, since its output is part of the
+// request.
 bool standard_output_is_whole() {
     std::cout.flush();
     return std::cout.good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
 }
 
-// A file that is opened while one of the three standard descriptors is closed would take its number, and get what is
-// said there.
+// Opens closed standard descriptors. A file that is opened while one of the three is closed would take its number, and
+// receive what is printed there.
 void hold_standard_descriptors_open() {
     for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
         if (::fcntl(descriptor, F_GETFD) == -1 && errno == EBADF) {
@@ -93,10 +94,10 @@ int main(int argument_count, char** argument_values) {
                       run_failed);
     } catch (const std::bad_alloc&) {
         return report_lack_of_memory();
-    } catch (const std::length_error&) { // more elements than memory can hold
+    } catch (const std::length_error&) { // more elements than a container can hold
         return report_lack_of_memory();
     } catch (const std::system_error& error) {
-        if (std::ferror(stdout) != 0) { // fmt says so by an exception of this kind
+        if (std::ferror(stdout) != 0) { // fmt throws this exception for a full disk
             return report_lost_output();
         }
         return report(

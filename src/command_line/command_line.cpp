@@ -23,7 +23,7 @@ namespace vkfv::command_line {
 
 namespace {
 
-// Set once, by declare_commands().
+// The commands, which declare_commands() sets once.
 std::vector<Command>& declared() {
     static std::vector<Command> commands;
     return commands;
@@ -34,13 +34,13 @@ std::function<std::string()>& declared_version() {
     return version;
 }
 
-// The arguments by the declarations of all commands: of one that was named first (`vkfv stack C.toml`), or of one that
-// is itself written as an option (`vkfv --stack C.toml`).
+// The arguments, parsed by the declarations of all commands. A command is either named first (`vkfv stack C.toml`), or
+// written as an option (`vkfv --stack C.toml`).
 class CommandLine {
   public:
     explicit CommandLine(const Command* named) : named_(named), app_("", "vkfv") {
         app_.set_version_flag("-v,--version", declared_version());
-        app_.allow_extras(); // what is left over is refused below, with a suggestion
+        app_.allow_extras(); // refuse_leftovers() suggests a word for them
         operands_.resize(all_commands().size());
         for (std::size_t k = 0; k < all_commands().size(); ++k) {
             if (named_ == nullptr && all_commands()[k].also_option) {
@@ -81,12 +81,13 @@ class CommandLine {
             command.run(options_);
         }
         if (options_.timings) {
-            fmt::print(options_.json ? stderr : stdout, "{}", stage_table()); // JSON stands alone
+            fmt::print(options_.json ? stderr : stdout, "{}", stage_table()); // JSON stands alone on standard output
         }
     }
 
   private:
-    // Where commands are options, the options of those that are none could be mistaken for commands.
+    // Tells whether the parser knows the option. Where commands are options, the options of commands that have no such
+    // form are left out, since they could be mistaken for commands.
     bool is_declared(const OwnedOption& owned) const {
         return named_ != nullptr ||
                std::ranges::any_of(owned.owners, [](const Command* owner) { return owner->also_option; });
@@ -146,7 +147,7 @@ class CommandLine {
                 return;
             }
         }
-        // Once all is parsed: an option that does not exist is told of first.
+        // Values are taken when all is parsed, so that an option that does not exist is reported first.
         auto* declared = app_.add_option_function<Value>(option.name, [this, take](const Value& value) {
             taken_.push_back([this, take, value] { take(options_, value); });
         });
@@ -159,7 +160,7 @@ class CommandLine {
             if (option.list) {
                 declared->delimiter(',');
                 if (named_ != nullptr) {
-                    declared->allow_extra_args(false); // it would take the operand
+                    declared->allow_extra_args(false); // further values would take the operand
                 }
             } else {
                 declared->expected(1)->take_all();
@@ -174,11 +175,11 @@ class CommandLine {
         }
     }
 
-    // As it was written: "--stack", or "stack" where it was named first.
+    // The command as it was written: "--stack" as an option, "stack" as the first word.
     std::string spelled(const std::string& command) const { return (named_ == nullptr ? "--" : "") + command; }
     std::size_t count(const Option& option) const { return app_.count(first_name(option)); }
 
-    // What CLI11 left over: an unknown option most likely meant the nearest known one.
+    // Refuses what CLI11 left over. An unknown option most likely meant the nearest known one.
     void refuse_leftovers() const {
         const auto leftovers = app_.remaining();
         if (leftovers.empty()) {
@@ -196,7 +197,7 @@ class CommandLine {
                               : "vkfv --help lists all.");
     }
 
-    // The only one that was given as an option.
+    // The one command that was given as an option. Throws InputError if there is none, or more than one.
     const Command& chosen() const {
         const Command* chosen = nullptr;
         std::vector<std::string> measuring;
@@ -232,7 +233,7 @@ class CommandLine {
                         fmt::format("Give {} {}, {}, to {}.", option->name, option->value, option->needed, owner));
     }
 
-    // What would be without effect, or mean another thing than was meant.
+    // Refuses an option that the command does not take, which would have no effect or another meaning than was meant.
     void refuse_stray(const OwnedOption& owned, const Command& command) const {
         if (count(*owned.option) == 0 || takes(owned, command)) {
             return;
@@ -272,13 +273,13 @@ class CommandLine {
                         meant ? fmt::format("Did you mean {}?", *meant) : "Name one of these.");
     }
 
-    const Command* named_; // none: commands are options
+    const Command* named_; // null: commands are options
     CLI::App app_;
     CommandOptions options_;
     std::deque<bool> switches_;
-    bool flag_ = false; // of commands without operands; which of them were given, CLI11 counts
-    std::vector<std::vector<std::string>> operands_; // of each command
-    std::vector<std::function<void()>> taken_;       // values of options that were given, in the order of declaration
+    bool flag_ = false;                              // for commands without operands; CLI11 counts which were given
+    std::vector<std::vector<std::string>> operands_; // of each command, in their order
+    std::vector<std::function<void()>> taken_;       // store the values that were given, in the order of declaration
 };
 
 } // namespace
@@ -326,8 +327,8 @@ void declare_commands(std::vector<Command> commands, std::function<std::string()
 
 namespace {
 
-// The word given with the last `--color`. Colours are set before the command line is parsed, so that the parser's own
-// messages have them; the parser refuses a word that is none of the choices.
+// Sets the log's colours by the word behind the last `--color`, before the command line is parsed, so that the parser's
+// own messages have them. The parser refuses a word that is none of the choices.
 void colour_log_as_asked(int argument_count, char** argument_values) {
     constexpr std::string_view name = "--color";
     for (int i = 1; i < argument_count; ++i) {
@@ -353,7 +354,7 @@ bool run_command_line(int argument_count, char** argument_values) {
         return false;
     }
     colour_log_as_asked(argument_count, argument_values);
-    // A wrong command line is told in JSON too.
+    // The log is JSON before the parse, so that a wrong command line is reported in JSON too.
     if (std::any_of(argument_values, argument_values + argument_count,
                     [](const char* word) { return std::string_view(word) == "--log-json"; })) {
         log_as_json();

@@ -35,7 +35,7 @@ bool takes_files(const Command& command) {
 }
 
 // Each key of the configuration, dotted, with the words that it takes where these are known: "true" and "false", or its
-// choices of whatever kind of its table.
+// choices for any kind of its table.
 const std::map<std::string, std::vector<std::string>>& configuration_keys() {
     static const std::map<std::string, std::vector<std::string>> keys = [] {
         std::map<std::string, std::vector<std::string>> all;
@@ -78,7 +78,7 @@ std::vector<std::string> settings() {
     return all;
 }
 
-// The names of the options that take a key and its value.
+// The names of the options whose value is a key with its value.
 std::vector<std::string> setting_options() {
     std::vector<std::string> names;
     for (const auto& [option, owners] : all_options()) {
@@ -89,7 +89,7 @@ std::vector<std::string> setting_options() {
     return names;
 }
 
-// The words that a command's operand may be, if it is no file.
+// The words that a command's operand may be; none if it is a file.
 std::vector<std::string> operand_words(const Command& command) {
     if (!command.operands.empty() && command.operands.front().key) {
         return key_names();
@@ -108,7 +108,7 @@ std::string quoted(const std::string& text) {
     return "'" + inside + "'";
 }
 
-// The first word is the command, or the option that stands for it, `--stack`.
+// The first word is taken as the command, or as the option that stands for it, `--stack`.
 std::string bash_script() {
     std::string options, operands, values, choices;
     std::vector<std::string> flags, free, files;
@@ -191,7 +191,7 @@ complete -o filenames -F _vkfv vkfv
                        fmt::arg("setting", fmt::join(setting_options(), "|")));
 }
 
-// Of _arguments: brackets and colons part its fields.
+// A text as a field of zsh's _arguments, whose fields end at brackets and colons.
 std::string zsh_field(const std::string& text) {
     std::string escaped;
     for (const char character : text) {
@@ -254,7 +254,7 @@ compdef _vkfv vkfv
 }
 
 std::string fish_script() {
-    std::vector<std::string> whole; // settings, with their values where these are known
+    std::vector<std::string> whole; // settings, with their values if known
     for (const auto& [key, words] : configuration_keys()) {
         if (words.empty()) {
             whole.push_back(key + "=");

@@ -13,7 +13,7 @@ namespace vkfv::command_line {
 
 namespace {
 
-// An override of the configuration. Empty: as if it was not given.
+// Stores a value as an override of the configuration's key. An empty value overrides nothing.
 Take<std::string> to_key(const std::string& option, const std::string& key, bool text) {
     return [option, key, text](CommandOptions& options, const std::string& value) {
         if (!value.empty()) {
@@ -58,7 +58,7 @@ void take_form(CommandOptions& options, const std::string& name) {
 
 } // namespace
 
-// In the order in which they override each other: the last one holds.
+// The options are in the order in which they override each other, with the strongest last.
 std::vector<Option> configuration_options() {
     return {setting_option(),
             {.name = "--rays",
@@ -135,7 +135,7 @@ std::vector<Option> band_options() {
     const auto take_l_filter = [](CommandOptions& options, double um) {
         options.of<surface::Band>().l_filter = nesting_index(um);
         if (um > 0 && options.of<surface::Band>().l_filter <= options.of<surface::Band>().s_filter) {
-            // All the digits that were written, and no rounding of the unit's.
+            // The length has all the digits that were written, without the rounding of its unit's conversion.
             refuse_argument(fmt::format("--s_filter_um {:.15g} with --l_filter_um {}",
                                         options.of<surface::Band>().s_filter * um_per_mm, um),
                             "an L-filter longer than the S-filter", "Exchange them, or leave one out.");

@@ -18,10 +18,10 @@ struct Entry {
 
 struct Section {
     std::string title;
-    int level = 1; // 2: of a command, in the reference
+    int level = 1; // 2: of a command in the reference
     std::vector<std::string> paragraphs{};
     std::vector<Entry> entries{};
-    std::vector<std::string> lines{}; // as they are: what is typed
+    std::vector<std::string> lines{}; // lines of input, printed as they are
 };
 
 std::string usage(const Command& command) {
@@ -128,7 +128,7 @@ std::vector<Section> whole_reference() {
 
 constexpr std::size_t text_width = 100, term_width = 30;
 
-// In lines of text_width, the first of which begins with `start`, padded to `indent`.
+// The text in lines of at most text_width characters. The first line begins with `start`, padded to `indent`.
 std::string wrapped(const std::string& text, std::string start, std::size_t indent) {
     std::string all, line = std::move(start);
     line.resize(std::max(indent, line.size() + (line.empty() ? 0 : 2)), ' ');
@@ -164,7 +164,7 @@ std::string terminal_text(const std::vector<Section>& sections) {
     return text;
 }
 
-// Every character as itself: '-' is a minus sign, a '.' at the start of a line would be a request.
+// The text with roff's escapes, so that '-' is a minus sign and a '.' at the start of a line no request.
 std::string roff(const std::string& text) {
     std::string escaped;
     for (const char character : text) {
@@ -229,7 +229,7 @@ std::string reference_markdown() {
         for (const auto& paragraph : section.paragraphs) {
             text += paragraph + "\n\n";
         }
-        if (!section.lines.empty()) { // a test runs what is not marked as text
+        if (!section.lines.empty()) { // a test runs the lines that are not marked as text
             text += fmt::format("```{}\n{}\n```\n{}", section.title.starts_with("Example") ? "" : "text",
                                 fmt::join(section.lines, "\n"), section.entries.empty() ? "" : "\n");
         }

@@ -1,4 +1,4 @@
-// What is told of the commands, all of it from their declarations.
+// Usage, help and reference of the commands, all made from their declarations.
 #pragma once
 
 #include "command_line/command.hpp"
@@ -8,23 +8,24 @@
 
 namespace vkfv::command_line {
 
-// An option of several commands is declared by each of them, by the same means: here it is once.
+// An option with the commands that take it. Each of them declares an option of several commands by the same function;
+// here it stands once.
 struct OwnedOption {
-    const Option* option; // as its first owner declares it
+    const Option* option; // as the first owner declares it
     std::vector<const Command*> owners;
 };
 const std::vector<OwnedOption>& all_options();
 
-// "--z_step_um" of an option with two spellings.
+// The first spelling of an option with two: "--z_step_um".
 std::string first_name(const Option& option);
-// "--z_step_um UM"; "--json".
+// The option with its value, as "--z_step_um UM" or "--json".
 std::string term_of(const Option& option);
 
-// For a terminal: a few lines for who types `vkfv` alone.
+// A usage of a few lines, for a person who types `vkfv` alone.
 std::string usage_text();
-// For a terminal; null: of the whole program.
+// The help for a terminal: of a command, or with null of the whole program.
 std::string help_text(const Command* command);
-// The whole reference, as Markdown (docs/commands.md) and in roff, for man.
+// The whole reference: Markdown for docs/commands.md, and roff for man.
 std::string reference_markdown();
 std::string reference_manual();
 

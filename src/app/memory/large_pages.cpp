@@ -1,6 +1,7 @@
-// Memory of images and reliefs in pages of 2 MiB, where the system gives them on request (madvise): it gives a page by
-// a fault and fills it with zeros, and 4 KiB at a time this took half of the time of a specimen of ten million points.
-// All of it may be freed by std::free, as libraries that do not know of these operators do.
+// Operators new and delete that ask the system (madvise) for pages of 2 MiB for large memory, as images and reliefs
+// take. The system gives each page by a fault and fills it with zeros; with pages of 4 KiB this took half of the time
+// of a specimen of ten million points. std::free may free all of this memory, as libraries do that do not know of these
+// operators.
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
@@ -11,7 +12,7 @@
 namespace {
 
 constexpr std::size_t page = std::size_t{2} << 20;
-constexpr std::size_t large = std::size_t{3} << 20; // less than an image of 1000 x 1000 floats
+constexpr std::size_t large = std::size_t{3} << 20; // bytes, less than an image of 1000 x 1000 floats
 
 void* allocate(std::size_t size) {
     if (size < large || size > std::numeric_limits<std::size_t>::max() - page) {
@@ -20,7 +21,7 @@ void* allocate(std::size_t size) {
     const std::size_t whole = (size + page - 1) / page * page;
     void* block = std::aligned_alloc(page, whole);
     if (block != nullptr) {
-        madvise(block, whole, MADV_HUGEPAGE); // where it is refused, pages are small
+        madvise(block, whole, MADV_HUGEPAGE); // if refused, the pages stay small
     }
     return block;
 }
