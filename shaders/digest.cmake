@@ -1,4 +1,5 @@
-# cmake -DFILES=... -DOUT=digest.h -P digest.cmake: the first 16 digits of the SHA-256 of the files' own, in order of name.
+# Writes the first 16 digits of the SHA-256 of the files' own SHA-256, in order of name: cmake -DFILES=...
+# -DOUT=digest.h -P digest.cmake.
 list(SORT FILES)
 set(sums "")
 foreach(file ${FILES})

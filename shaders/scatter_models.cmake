@@ -42,7 +42,7 @@ function(vkfv_scatter_models folder)
       set(scene "VKFV_SCENE ")
       set(from_file ", true")
     endif()
-    # All that there is needs no question in the innermost loop.
+    # A model that is the only one in the scene needs no question in the innermost loop.
     set(chosen "scatter_models == 1u << ${index} || ((scatter_models & (1u << ${index})) != 0u && lobe.model == ${index})")
     string(APPEND VKFV_SCATTER_INCLUDES "#include \"physics/scatter/${stem}.glsl\"\n")
     string(APPEND VKFV_SCATTER_INDICES "const uint ${index} = ${VKFV_SCATTER_COUNT}u;\n")

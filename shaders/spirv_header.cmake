@@ -1,4 +1,4 @@
-# cmake -DFILE=NAME.spv -DNAME=NAME -DOUT=NAME.h -P spirv_header.cmake: the words of a SPIR-V file as a C array.
+# Writes the words of a SPIR-V file as a C array: cmake -DFILE=NAME.spv -DNAME=NAME -DOUT=NAME.h -P spirv_header.cmake.
 file(READ ${FILE} bytes HEX)
 string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${bytes}")
 string(REGEX REPLACE "(0x........,0x........,0x........,0x........,0x........,0x........,0x........,0x........,)" "\\1\n"

@@ -1,10 +1,10 @@
-# A kernel a job; those that meet the specimen in a variant for each traversal.
+# The list of the kernels: one for each job, and for jobs that meet the specimen a variant for each traversal.
 foreach(job forward_illumination forward_imaging probe_paths)
   vkfv_kernel(${job}_quadtree ${job}.comp)
   vkfv_kernel(${job}_ray_query ${job}.comp VKFV_RAY_QUERY)
   vkfv_kernel(${job}_bvh ${job}.comp VKFV_BVH)
 endforeach()
-# As software devices run them faster (VKFV_LEAVE_IF): those by which light is traced there.
+# Variants for software devices, which run faster with VKFV_LEAVE_IF: the kernels that trace light.
 foreach(job forward_illumination forward_imaging)
   vkfv_kernel(${job}_software ${job}.comp VKFV_SOFTWARE)
 endforeach()
@@ -12,7 +12,7 @@ vkfv_kernel(forward_illumination_specialised_software forward_illumination.comp 
 vkfv_kernel(forward_imaging_specialised_software forward_imaging.comp VKFV_SPECIALISED VKFV_SOFTWARE)
 vkfv_kernel(backward_software backward.comp VKFV_BACKWARD VKFV_SOFTWARE)
 vkfv_kernel(backward_specialised_software backward.comp VKFV_BACKWARD VKFV_SPECIALISED VKFV_SOFTWARE)
-# With the instrument as constants (device/prescription.glsl).
+# Variants with the instrument as constants (device/prescription.glsl).
 foreach(traversal quadtree ray_query bvh)
   string(TOUPPER VKFV_${traversal} define)
   vkfv_kernel(forward_illumination_specialised_${traversal} forward_illumination.comp VKFV_SPECIALISED VKFV_POLYNOMIALS ${define})

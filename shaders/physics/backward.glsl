@@ -433,8 +433,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         Lobe lobe = choose_lobe(material, draws.u3);
         bool delta = lobe_is_delta(VKFV_SCENE lobe);
         Material alone = material_of_lobe(lobe);
-        // One direction is drawn from the lobe, as if the light came from the detector: it is a candidate for the
-        // connection, and the path goes on by it.
+        // The lobe draws a direction as if the light came from the detector. It is a candidate for the connection, and
+        // the path goes on by it.
         bool absorbed = lobe.model == SCATTER_NONE;
         under_way = !absorbed && (delta || !last);
         Scattered scattered;

@@ -36,7 +36,7 @@ VKFV_FUNCTION real shifted_coordinate(uint fraction, uint shift) {
     return (real((fraction + shift) >> 9) + real(0.5)) * real(1.1920928955078125e-7);
 }
 
-// One coordinate of a point, by that dimension's z and shift. n = 1 has no fraction.
+// A coordinate of a point, by that dimension's z and shift. A lattice with n = 1 has no fraction.
 VKFV_FUNCTION real lattice_coordinate(Lattice lattice, uint point, uint z, uint shift) {
     return shifted_coordinate(lattice.size_bits == 0u ? 0u : (point * z) << (32u - lattice.size_bits), shift);
 }

@@ -78,7 +78,7 @@ std::vector<SectionLine> section_of(const optics::Facets& facets) {
     }
     std::vector<SectionLine> lines;
     for (const MeshEdge& end : ends) {
-        if (pieces.contains(end)) { // else it was the other end of an earlier line
+        if (pieces.contains(end)) { // otherwise the end belongs to an earlier line
             lines.push_back(line_from(pieces, end, facets));
         }
     }

@@ -1,5 +1,5 @@
 // A page of HTML, also well-formed XML, that contains all it shows: texts, pictures, data, scripts and their licences.
-// The same calls give the same bytes.
+// Equal calls give equal bytes.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-# The files of the page, the libraries in it, and the schemas that declare its figures, as page_files.cpp: the assembler takes their bytes as they are.
+# Embeds the files of the page, its libraries, and the schemas that declare its figures, as page_files.cpp. The
+# assembler takes their bytes unchanged.
 function(vkfv_library_file variable name folder package)
   find_file(${variable} NAMES ${name} PATHS /usr/share /usr/local/share PATH_SUFFIXES ${folder} NO_DEFAULT_PATH)
   if(NOT ${variable})

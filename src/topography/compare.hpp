@@ -26,7 +26,7 @@ struct Deviation {
 // The ratio measured / truth; NaN where the truth is 0, as the Sq of a flat is.
 double ratio_to_truth(double measured, double truth);
 
-// Both maps prepared for comparison: points not measured in one are not measured in both; the form of each is removed
+// Two maps prepared for comparison: points not measured in one are not measured in both; the form of each is removed
 // (by default its least-squares plane), then the filters are applied. With the form "truth" the truth is unchanged, and
 // the measured heights lose the least-squares plane of their deviation from it: no step or slope of the truth is lost.
 struct LevelledPair {

@@ -778,8 +778,8 @@ double FocusProbes::suitable_smoothing() const {
     if (images_ <= few_images) {
         return 0;
     }
-    // Both averages of this standard deviation move Gaussian curves nearer than 1.6 times it to the end itself,
-    // whatever their width.
+    // Two averages of this standard deviation move Gaussian curves nearer than 1.6 times it to the end itself, whatever
+    // their width.
     constexpr double least_distance = 2, share_nearer = 0.05;
     return std::min(topography::suitable_smoothing(curve_width(), images_),
                     std::max(least_smoothing, distance_from_the_ends(share_nearer) / least_distance));

@@ -254,7 +254,7 @@ PlacesByWidth::Width PlacesByWidth::width(int image, double offset, double curva
     const double found = from_the_end(at);
     const int nearest_image = found == at ? image : images_ - 1 - image;
     struct Known {
-        double logarithm, curvature; // both are logarithms
+        double logarithm, curvature; // the curvature is a logarithm, too
     };
     std::vector<Known> known;
     known.reserve(by_width_.size());

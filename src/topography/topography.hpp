@@ -50,7 +50,7 @@ namespace vkfv::topography {
 inline constexpr double most_smoothing_steps = 100; // 1202 images in memory
 
 struct TopographyOptions {
-    // None lets FocusProbes::settle() choose; the evaluator needs a measure.
+    // Without a value FocusProbes::settle() chooses; the evaluator needs a measure.
     std::optional<FocusMeasure> focus_measure = where_little_is_averaged;
     int window_px = 7;                           // odd, at least 3
     WindowShape window_shape = WindowShape::box; // see FocusWindow

@@ -30,7 +30,7 @@ struct CoordinateBreak {
 enum class SurfaceRole { refracting, aperture_stop, field_stop, illumination_aperture };
 const char* name_of(SurfaceRole role); // name in prescriptions, "aperture stop"; refracting: ""
 
-// One surface, in the direction in which the prescription lists them. Lengths in mm.
+// A surface, in the direction in which the prescription lists its surfaces. Lengths in mm.
 struct PrescribedSurface {
     std::vector<CoordinateBreak> breaks; // between the previous surface's thickness and this vertex, in order
     double curvature = 0;                // 1/mm

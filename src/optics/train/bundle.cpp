@@ -218,7 +218,7 @@ Met meet_asphere(const Surface& surface, const Vector& direction, Vector point, 
     const Affine height = aspheric_sag(surface, square(point.x) + square(point.y));
     const Affine outward = direction.x * point.x + direction.y * point.y;
     const double across_squared = square(direction.x).high() + square(direction.y).high();
-    // Both points lie between these heights, which bounds the distance between them.
+    // The two points lie between these heights, which bounds the distance between them.
     double way = (std::max(heights.high, point.z.high()) - std::min(heights.low, point.z.low())) / direction.z.low();
     Affine rate;
     constexpr int rounds = 2; // the second round uses the distance found by the first

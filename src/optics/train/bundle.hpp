@@ -53,9 +53,9 @@ class BundleTracer {
     BundleTracer(std::span<const physics::f64::Surface> train, double source_distance,
                  const EmissionMiddle& middle = {});
 
-    // None if it is proved that no ray of the box, within reach, passes the whole train. The proof uses the equations
-    // of the trace (physics/train.glsl) with apertures, total reflection and missed surfaces, but not losses at
-    // interfaces. Otherwise some rays may pass, and the result is the coordinate along which halving the box helps
+    // No value if it is proved that no ray of the box, within reach, passes the whole train. The proof uses the
+    // equations of the trace (physics/train.glsl) with apertures, total reflection and missed surfaces, but not losses
+    // at interfaces. Otherwise some rays may pass, and the result is the coordinate along which halving the box helps
     // most.
     std::optional<EmissionCoordinate> may_pass(const EmissionBox& box) const;
 

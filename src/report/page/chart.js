@@ -1,5 +1,6 @@
 "use strict";
-// Of a text that is seen, in px. Kept: asking the browser costs a layout, at every image that plays.
+// The width (px) of a text that is shown. Widths are kept, since asking the browser costs a layout, which would be at
+// every image that plays.
 vkfv.textWidth = (() => {
     const known = new Map();
     return node => {
@@ -10,13 +11,13 @@ vkfv.textWidth = (() => {
     };
 })();
 
-// Curves over two axes, as wide as their place and drawn again when that changes.
-// content(): {x: {label, domain, log}, y: {label, domain, zero}, series: [{name, points: [[x, y] ...], kind, dots}], marks: [{x, name,
-// quiet}], height}; y of NaN leaves a gap; null: there is nothing to draw. kind: "line" (default), "steps".
+// Draws curves over two axes, as wide as their place, and again when that width changes. content() returns null if there is
+// nothing to draw, otherwise {x: {label, domain, log}, y: {label, domain, zero}, series: [{name, points: [[x, y] ...], kind, dots}],
+// marks: [{x, name, quiet}], height}. A y of NaN leaves a gap. kind: "line" (default), "steps".
 vkfv.chart = (place, label, content) => {
     const element = d3.select(place);
-    const styles = 6; // of series, in page.css
-    const line = 18;  // of text, in px
+    const styles = 6; // series in page.css
+    const line = 18; // px, of text
     const margin = {right: 16, bottom: 44, left: 62};
 
     function padded([low, high]) {
@@ -24,7 +25,8 @@ vkfv.chart = (place, label, content) => {
         return [low - pad, high + pad];
     }
 
-    // Name after name behind the axis' title, or below it where there is no room. Returns how many lines that takes.
+    // Writes the names in a row behind the axis' title, or in rows below it where there is no room. Returns the number
+    // of rows.
     function legend(svg, series, title, right) {
         const named = series.map((one, k) => ({name: one.name, style: one.colour || k % styles + 1})).filter(one => one.name);
         const entries = named.map(one => {
@@ -62,11 +64,12 @@ vkfv.chart = (place, label, content) => {
             return {values, written: vkfv.ticks(values)};
         }
         const decades = scale.ticks(50).filter(value => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9);
-        const every = Math.ceil(decades.length / (1.5 * count)); // short texts
+        const every = Math.ceil(decades.length / (1.5 * count)); // texts of decades are short
         return {values: decades.filter((unused, k) => k % every === 0), written: vkfv.decade};
     }
 
-    // From the last one, which stays within the page, backwards: none where it would touch the one after it.
+    // Places the texts from the last one backwards. The last one stays within the page; a text that would touch the one
+    // behind it is removed.
     function placeTexts(axis, across, width) {
         const gap = 6;
         let next = width + gap;

@@ -1,10 +1,10 @@
 "use strict";
-// What all parts of the page share: the data, what is chosen, and how numbers are written. Lengths are micrometres.
+// The base that all parts of the page share: data, choices and the notation of numbers. Lengths are micrometres.
 const vkfv = (() => {
     const text = id => document.getElementById(id).textContent;
     const data = JSON.parse(text("data"));
 
-    // Base64 of a script element as an array of this type; decoded once.
+    // The base64 of a script element as an array of this type, which is decoded once.
     const decoded = new Map();
     function blob(id, Type) {
         if (!decoded.has(id)) {
@@ -24,14 +24,14 @@ const vkfv = (() => {
     const raised = power => [...String(power)].map(c => c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]).join("");
     const times = power => power ? `\u00a0×\u00a010${raised(power)}` : "";
 
-    // Digits alone. Fewer than no decimals: the last digits before the point are zeros.
+    // The digits of a number alone. A negative number of decimals makes the last digits before the point zeros.
     function fixed(value, {power, decimals}) {
         const shown = value / 10 ** power, unit = 10 ** -decimals;
         const text = decimals < 0 ? String(Math.round(shown / unit) * unit) : shown.toFixed(decimals);
         return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
     }
 
-    // Of numbers that are compared: all have the decimals that the largest has.
+    // The common notation of numbers that are compared: all have the decimals of the largest.
     function form(values, digits = 4) {
         const exponent = exponentOf(d3.max(values.filter(Number.isFinite), Math.abs) || 0, digits);
         const power = powerOf(exponent);
@@ -39,7 +39,7 @@ const vkfv = (() => {
     }
     const alike = (value, how) => Number.isFinite(value) ? fixed(value, how) + times(how.power) : "–";
 
-    // What was measured keeps its zeros; what was set, and ticks, do not need them.
+    // A measured number keeps its zeros at the end; numbers that were set, and ticks, do not need them.
     const figure = (value, digits = 4) => value === 0 ? "0" : alike(value, form([value], digits));
     function number(value, digits = 4) {
         if (!Number.isFinite(value)) {
@@ -50,7 +50,8 @@ const vkfv = (() => {
         return (text.includes(".") ? text.replace(/\.?0+$/, "") : text) + times(how.power);
     }
 
-    // With its standard uncertainty, if that is known: two digits of it, and those of the value that it leaves.
+    // A value with its standard uncertainty if this is known: two digits of the uncertainty, and the value to the same
+    // decimals.
     function uncertain(value, uncertainty) {
         const most = 6; // digits of the value
         if (!Number.isFinite(value) || !(uncertainty > 0) || !Number.isFinite(uncertainty)) {
@@ -72,7 +73,7 @@ const vkfv = (() => {
         const least = d3.range(decimals).find(k => values.every(value => whole(value, k)));
         return value => value === 0 ? "0" : alike(value, {power, decimals: least === undefined ? decimals : least});
     }
-    // A power of ten; the first two in full.
+    // A power of ten. The first two are written in full.
     const decade = value => [1, 10].includes(value) ? String(value) : `10${raised(Math.round(Math.log10(value)))}`;
 
     const states = ["measured", "no peak within the scan", "no better than chance", "poor fit", "many peaks",
@@ -93,7 +94,7 @@ const vkfv = (() => {
         return layers.get(layer);
     }
 
-    // What is chosen, and who wants to know: "cursor", "view", "profile", "evaluation", "scale", "frame".
+    // The choices, and the events that tell of a change: "cursor", "view", "profile", "evaluation", "scale", "frame".
     const chosen = {evaluation: (data.evaluations || [])[0], cursor: null, profile: null, frame: 0, scale: null};
     const events = d3.dispatch("cursor", "view", "profile", "evaluation", "scale", "frame", "resize");
     function choose(what, value) {
@@ -101,6 +102,6 @@ const vkfv = (() => {
         events.call(what);
     }
 
-    const parts = []; // run by main.js once all are there
+    const parts = []; // main.js runs them when all are there
     return {data, text, blob, number, figure, form, alike, uncertain, ticks, decade, states, heights, chosen, events, choose, parts};
 })();

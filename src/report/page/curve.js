@@ -1,11 +1,11 @@
 "use strict";
-// The focus curve of the grid's point that is nearest to the cursor, with what its peak was found by.
+// The focus curve of the grid's point nearest to the cursor, with the fit that found its peak.
 vkfv.parts.push(() => {
     const {number} = vkfv;
-    const numbers = 10; // of a curve: see curves_data() of page_data.cpp
+    const numbers = 10; // for each curve: see curves_data() of page_data.cpp
 
-    // {z: [...], values: [...], peak, uncertainty, fit: [[z, value] ...], column, row}: pixels of the image, column from the left, row
-    // from below; null without curves.
+    // Returns {z: [...], values: [...], peak, uncertainty, fit: [[z, value] ...], column, row}, or null without curves. The pixel of the
+    // image has its column counted from the left and its row from below.
     vkfv.curve = () => {
         const {curves, pixels} = vkfv.chosen.evaluation;
         if (!curves) {

@@ -1,5 +1,5 @@
 "use strict";
-// Which heights there are how often, and on what share of the area each is exceeded.
+// The histogram of heights, and the share of the area on which each height is exceeded.
 vkfv.parts.push(() => {
     const of = (name, key) => vkfv.chosen.evaluation.distributions[key] &&
         {name, ...vkfv.chosen.evaluation.distributions[key]};

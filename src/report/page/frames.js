@@ -34,7 +34,8 @@ vkfv.parts.push(() => {
         button.setAttribute("aria-pressed", String(playing !== null));
     });
 
-    // A frame's pixel is a block of the image's, as a point of a map is; both begin at the image's lower left.
+    // A pixel of a frame is a block of the image's pixels, as a point of a map is. Frame and map both begin at the
+    // image's lower left.
     const cross = d3.select("#frame-cross").attr("viewBox", `0 0 ${frames.columns} ${frames.rows}`).attr("preserveAspectRatio", "none");
     const pixels = () => vkfv.chosen.evaluation.pixels;
     vkfv.events.on("cursor.frame", () => {

@@ -1,5 +1,5 @@
 "use strict";
-// Where the light goes, from the source to the detector. What is lost at an element of the way leaves the stream there.
+// The flow of light from the source to the detector. Light that is lost at an element leaves the stream there.
 vkfv.parts.push(() => {
     const {emitted, shares} = vkfv.data.ledger;
     const place = document.getElementById("flow");
@@ -13,14 +13,14 @@ vkfv.parts.push(() => {
         ["Specimen", name => ["beside the specimen", "absorbed by the specimen", "bounce limit", "escaped outside the pupil"].includes(name)],
         ["Imaging", name => / at imaging /.test(name) || ["beam splitter, towards the detector", "beside the detector"].includes(name)],
     ];
-    const shown = 3; // of an element's losses, others together
-    const narrowest = 760; // px, of streams with their labels
+    const shown = 3; // losses of an element; others are put together
+    const narrowest = 760; // px, for streams with their labels
     const notAimed = power("not aimed at");
     const aimed = emitted - notAimed;
     const detected = power("detected");
     const percent = value => `${figure(100 * value / aimed, 3)} %`;
 
-    // [{name, arriving, losses: [[name, power] ...]} ...]: source, elements, detector.
+    // Source, elements and detector as [{name, arriving, losses: [[name, power] ...]} ...].
     function stations() {
         const used = new Set(["detected", "not aimed at"]);
         const found = ways.map(([name, belongs]) => {
@@ -29,7 +29,8 @@ vkfv.parts.push(() => {
             const rest = d3.sum(losses.slice(shown), d => d[1]);
             return {name, losses: [...losses.slice(0, shown), ...(rest > 0 ? [["other losses there", rest]] : [])]};
         });
-        // Of the whole way: what an element of the non-sequential trace ends, and the estimator does not follow.
+        // These losses belong to no element: light that an element ends in the non-sequential trace, and light that the
+        // estimator does not follow.
         const others = shares.filter(d => !used.has(d[0]) && d[1] > 1e-9 * aimed).sort((a, b) => b[1] - a[1]).slice(0, 8);
         const all = [{name: "Source", losses: others}, ...found, {name: "Detector", losses: []}];
         let left = aimed;
@@ -53,7 +54,7 @@ vkfv.parts.push(() => {
         return {nodes, links: links.filter(link => link.value > 0)};
     }
 
-    // Words in lines of so many letters.
+    // The words in lines of at most this number of letters.
     function wrapped(text, letters) {
         const lines = [""];
         for (const word of text.split(" ")) {
@@ -67,7 +68,8 @@ vkfv.parts.push(() => {
         return lines;
     }
 
-    // The stream runs along the top, under its own labels. Losses leave downwards, each element's in the room before the next one.
+    // The stream runs along the top, under its own labels. Losses leave downwards, those of an element in the room
+    // before the next element.
     function streams(all) {
         const width = Math.min(1500, place.clientWidth), bar = 12, top = 42, line = 15, letter = 7;
         const svg = d3.select(place).append("svg").attr("width", width).attr("role", "img")
@@ -76,7 +78,7 @@ vkfv.parts.push(() => {
         const laid = sankey(graph(all));
         const main = laid.nodes.filter(node => !node.lost);
         const rooms = main.map(node => node.sourceLinks.some(link => link.lost) ? 1 : 0.4).slice(0, -1);
-        const unit = (width - 4 - bar - 40) / d3.sum(rooms); // the last label is wider than its bar
+        const unit = (width - 4 - bar - 40) / d3.sum(rooms); // the label of the last element is wider than its bar
         let x = 2, lowest = top;
         main.forEach((node, k) => {
             const high = node.y1 - node.y0;
@@ -96,7 +98,7 @@ vkfv.parts.push(() => {
         });
         sankey.update(laid);
         svg.attr("height", lowest + 6).attr("viewBox", `0 0 ${width} ${lowest + 6}`);
-        // As areas: a wide line that bends would fold.
+        // Links are areas, since wide lines that bend would fold.
         const bend = d3.interpolateNumber;
         const area = d3.area().x(d => d.x).y0(d => d.y - d.half).y1(d => d.y + d.half);
         svg.selectAll("path").data(laid.links).enter().append("path").attr("class", d => d.lost ? "link lost" : "link")
@@ -113,7 +115,8 @@ vkfv.parts.push(() => {
         }
     }
 
-    // Where streams have no room: a bar each, a loss where it leaves what the bar above it has.
+    // Bars for places where streams have no room. The bar of a loss lies at the end of the part that is left of the bar
+    // above.
     function bars(all) {
         const list = d3.select(place).append("ol").attr("class", "losses");
         const row = (name, from, to, lost) => {
@@ -137,7 +140,7 @@ vkfv.parts.push(() => {
         d3.select(place).selectAll("*").remove();
         (place.clientWidth < narrowest ? bars : streams)(stations());
     }
-    // The backward estimator follows what is detected alone.
+    // The backward estimator follows only light that is detected.
     const followed = power("not followed backward") === 0;
     d3.select("#flow-note").text(
         `${vkfv.number(emitted)} W leave the source` + (notAimed > 0

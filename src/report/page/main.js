@@ -1,8 +1,8 @@
 "use strict";
-// Everything begins once every part is there.
+// This script comes last, and runs the parts when all of them are there.
 vkfv.parts.forEach(part => part());
 vkfv.events.call("evaluation");
-// Tables and drawings that are wider than the page say so.
+// Marks the tables and drawings that are wider than the page.
 const showWide = () => document.querySelectorAll(".wide").forEach(place => {
     place.toggleAttribute("data-more", place.scrollWidth > place.clientWidth + 1);
 });

@@ -1,15 +1,16 @@
 "use strict";
-// Measured heights, truth and deviation side by side: one zoom, one cursor, one profile; measured and true in one scale.
+// Measured heights, truth and deviation side by side, with one zoom, one cursor and one profile. Measured and true
+// heights have one scale.
 vkfv.parts.push(() => {
     const titles = {measured: "Measured height", truth: "True height", deviation: "Deviation, measured − true"};
     const margin = {left: 48, right: 8, top: 20, bottom: 38};
     const palette = interpolate => d3.range(256).map(k => d3.rgb(interpolate(k / 255)));
     const viridis = palette(d3.interpolateViridis);
     const blueRed = palette(share => d3.interpolateRdBu(1 - share));
-    const pixelsOf = colours => Uint32Array.from(colours, ({r, g, b}) => (255 << 24 | b << 16 | g << 8 | r) >>> 0); // little end first
+    const pixelsOf = colours => Uint32Array.from(colours, ({r, g, b}) => (255 << 24 | b << 16 | g << 8 | r) >>> 0); // little endian
     const pixels = new Map([[viridis, pixelsOf(viridis)], [blueRed, pixelsOf(blueRed)]]);
     const number = vkfv.number;
-    let view = d3.zoomIdentity; // in units of the plots' own width
+    let view = d3.zoomIdentity; // in widths of a plot
     let drags = "profile";
     let panels = [];
     let plot = {width: 0, height: 0};
@@ -21,10 +22,11 @@ vkfv.parts.push(() => {
     const y = () => d3.scaleLinear().domain([low(), low() + map().rows * map().pitch[1]]).range([plot.height, 0]);
     const zoomed = () => d3.zoomIdentity.translate(view.x * plot.width, view.y * plot.width).scale(view.k);
 
-    // From the lowest height to the highest, but for the outermost two thousandths at either end.
+    // The scale from the lowest height to the highest, without the outermost two thousandths at either end.
     function usualScale() {
         const {layers} = map();
-        // Of some, which tell as well: every point of a small map, one in a prime number of a large one.
+        // The heights of some points, which are enough: every point of a small map, one in a prime number of a large
+        // one.
         const sorted = (wanted, change = value => value) => {
             const some = [];
             for (const layer of wanted.filter(Boolean)) {
@@ -97,7 +99,7 @@ vkfv.parts.push(() => {
             .join("path").attr("class", d => d[0]).attr("d", d => d[1]);
     }
 
-    // The map's point under a place of the plot.
+    // The point of the map at a place of the plot.
     function pointAt([px, py]) {
         const transform = zoomed();
         const {columns, rows, x0, y0, pitch} = map();
@@ -147,7 +149,7 @@ vkfv.parts.push(() => {
         for (const end of ["pointerup", "pointercancel"]) {
             node.addEventListener(end, () => { from = null; });
         }
-        let begun = null; // of a profile by keys
+        let begun = null; // begin of a profile that is drawn by keys
         panel.svg.node().addEventListener("keydown", event => {
             const {columns, rows} = map();
             const cursor = vkfv.chosen.cursor;
@@ -175,7 +177,7 @@ vkfv.parts.push(() => {
         });
     }
 
-    // About the cursor.
+    // Zooms about the cursor.
     function magnify(factor) {
         const transform = zoomed();
         const {cursor} = vkfv.chosen;
@@ -237,7 +239,7 @@ vkfv.parts.push(() => {
         vkfv.events.call("view");
     }
 
-    // Under each map its colours, as wide as the map, and what grey means.
+    // Draws the colours of each map under it, as wide as the map, and the meaning of grey.
     function drawBars() {
         const scale = vkfv.chosen.scale;
         for (const panel of panels) {
@@ -245,7 +247,7 @@ vkfv.parts.push(() => {
             const [title, domain, colours] = deviation ? ["Deviation / µm", [-scale.deviation, scale.deviation], blueRed]
                                                        : ["Height / µm", [scale.low, scale.high], viridis];
             const {width} = plot, [first, last] = [margin.left, margin.left + width];
-            const below = panel.gaps && width < 200; // no room beside the title
+            const below = panel.gaps && width < 200; // there is no room beside the title
             const svg = panel.bar.html("").append("svg").attr("width", last + margin.right).attr("height", below ? 80 : 60).attr("role", "img")
                 .attr("aria-label", `Colours: ${title}, from ${number(domain[0])} to ${number(domain[1])}; grey: not measured`);
             svg.append("text").attr("x", first).attr("y", 14).text(title);

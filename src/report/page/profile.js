@@ -1,10 +1,10 @@
 "use strict";
-// Along a line over the maps: the values of the points that lie nearest, one a pitch.
+// The profile along a line over the maps: the values of the nearest points, one for each pitch.
 vkfv.parts.push(() => {
     const {number} = vkfv;
     const names = {measured: "measured", truth: "true", deviation: "deviation"};
 
-    // {distance, measured: [...], truth, deviation}, µm.
+    // Returns {distance, measured: [...], truth, deviation} in µm.
     vkfv.profile = () => {
         const {from, to} = vkfv.chosen.profile;
         const {columns, pitch, layers} = vkfv.chosen.evaluation.map;

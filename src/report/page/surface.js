@@ -1,5 +1,5 @@
 "use strict";
-// The surface in space, by three.js; made when it is first seen.
+// The surface in space, drawn by three.js, which starts when the surface is first seen.
 vkfv.parts.push(() => {
     const canvas = document.getElementById("space");
     const note = d3.select("#space-note");
@@ -9,7 +9,7 @@ vkfv.parts.push(() => {
     const layer = () => d3.select("#space-layer").property("value");
     const chosenScale = () => 10 ** Number(d3.select("#space-scale").property("value"));
 
-    // Corners where something was measured, triangles between three such.
+    // The surface has a vertex at each measured point, and a triangle between three such vertices.
     function geometry() {
         const {columns, rows, pitch, layers} = vkfv.chosen.evaluation.map;
         const heights = vkfv.heights(layers[layer()]);
@@ -66,7 +66,7 @@ vkfv.parts.push(() => {
         camera.up.set(0, 0, 1);
         camera.position.set(-0.9, -1.5, 1.2);
         const controls = new THREE.OrbitControls(camera, canvas);
-        controls.enableKeys = false; // they would move the page's other parts too
+        controls.enableKeys = false; // keys would move the page's other parts too
         controls.enablePan = false;
         const light = new THREE.DirectionalLight(0xffffff, 0.65);
         light.position.set(-1, 0.6, 1.5);
@@ -99,11 +99,11 @@ vkfv.parts.push(() => {
         if (anew || space.of !== vkfv.chosen.evaluation) {
             space.of = vkfv.chosen.evaluation;
             space.texture = texture(space.of);
-            // A fifth of the width shows any relief.
+            // A height of a fifth of the width shows any relief.
             const factor = Math.log10(Math.max(0.1, Math.min(1000, 0.2 / Math.max(1e-9, space.relief))));
             d3.select("#space-scale").property("value", Math.round(factor * 20) / 20);
         }
-        // The heights' colours until the image is there.
+        // The surface has the heights' colours until the image is there.
         const textured = d3.select("#space-colour").property("value") === "texture" && space.texture.image.complete;
         space.material.map = textured ? space.texture : null;
         space.material.vertexColors = textured ? THREE.NoColors : THREE.VertexColors;
@@ -113,7 +113,7 @@ vkfv.parts.push(() => {
 
     function draw() {
         if (window.matchMedia("print").matches) {
-            return; // the sheet shows what the window did
+            return; // the print shows the picture of the window
         }
         const width = canvas.clientWidth, height = canvas.clientHeight;
         space.scene.background = new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue("--raised").trim());
@@ -126,7 +126,8 @@ vkfv.parts.push(() => {
         space.renderer.render(space.scene, space.camera);
     }
 
-    // By angle around the vertical and above the plane, radians, and distance as a factor.
+    // Turns the camera by angles (radians) around the vertical and above the plane, and multiplies its distance by a
+    // factor.
     function turn(around, above, factor = 1) {
         const {camera, controls} = space;
         const place = new THREE.Spherical().setFromVector3(
@@ -169,7 +170,7 @@ vkfv.parts.push(() => {
     }, {rootMargin: "200px"}).observe(canvas);
     window.addEventListener("beforeprint", () => {
         begun();
-        if (space) { // a canvas out of sight may be printed as it was shown last
+        if (space) { // a canvas out of sight might be printed as last shown
             draw();
             document.getElementById("space-print").src = canvas.toDataURL();
         }

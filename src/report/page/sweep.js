@@ -1,10 +1,10 @@
 "use strict";
-// A sweep as a matrix: the first parameter down, the last along, those between chosen above it. A click, or Enter, shows a
-// combination; the figure over the last parameter stands below.
+// A sweep as a matrix: the first parameter down and the last along, with choices for those between above it. A click, or Enter,
+// shows a combination. The chart of the figure over the last parameter stands below.
 vkfv.parts.push(() => {
     const {parameters, rows, figures} = vkfv.data;
     const {figure} = vkfv;
-    const most = 100; // between swept values; beyond it the axis is logarithmic
+    const most = 100; // largest ratio of swept values on a linear axis
     const last = parameters.length - 1;
     const down = last > 0 ? parameters[0] : {label: "", values: [""]};
     const between = parameters.slice(1, -1);
@@ -58,7 +58,7 @@ vkfv.parts.push(() => {
         chart();
     }
 
-    // A curve a value of the first parameter; only where the last is a number.
+    // A curve for each value of the first parameter. There is no chart unless the last parameter is a number.
     const chart = vkfv.chart("#sweep-chart", "The figure over the last parameter", () => {
         const along = parameters[last].values.map(Number);
         if (!along.every(Number.isFinite) || along.length < 2) {

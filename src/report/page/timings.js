@@ -1,5 +1,6 @@
 "use strict";
-// The times of a run, from timings.js beside the page: the page itself has none, so that it is the same bytes each time.
+// The times of a run, from the file timings.js beside the page. The page itself has no times, so that it is the same
+// bytes after each run.
 vkfv.timings = {
     show(csv) {
         const {figure} = vkfv;
