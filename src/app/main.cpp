@@ -97,7 +97,7 @@ int main(int argument_count, char** argument_values) {
     } catch (const std::length_error&) { // more elements than a container can hold
         return report_lack_of_memory();
     } catch (const std::system_error& error) {
-        if (std::ferror(stdout) != 0) { // fmt throws this exception for a full disk
+        if (std::ferror(stdout) != 0) { // fmt throws this where output fails
             return report_lost_output();
         }
         return report(

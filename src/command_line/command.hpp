@@ -28,8 +28,8 @@ struct CommandOptions {
     std::optional<std::filesystem::path> out;
     bool quiet = false;
     bool timings = false;
-    bool log_json = false; // set before the parse: run_command_line()
-    std::string color;     // set before the parse: run_command_line()
+    bool log_json = false; // acted upon before the parse: run_command_line()
+    std::string color;     // acted upon before the parse: run_command_line()
     bool json = false;
     bool markdown = false;
 

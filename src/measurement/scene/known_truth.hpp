@@ -12,7 +12,7 @@
 
 namespace vkfv::measurement {
 
-// Both maps stand on the regular grid of the measured heights: it has the nominal pitch, and its middle is where the
+// The two maps stand on the regular grid of the measured heights: it has the nominal pitch, and its middle is where the
 // middle of the detector looks, in the specimen's frame.
 struct KnownTruth {
     surface::HeightMap heights; // at the place that each pixel really sees

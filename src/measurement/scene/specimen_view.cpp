@@ -124,7 +124,7 @@ std::vector<Warning> warning_of_lost_light(const Configuration& configuration, c
     const double detected = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
     if (!(detected > 0)) {
         const auto most = std::ranges::max_element(ledger.entries, {}, [](const auto& entry) {
-            return entry.status == Status::not_aimed_at ? 0.0 : entry.power; // light that cannot pass is not aimed
+            return entry.status == Status::not_aimed_at ? 0.0 : entry.power; // it could not pass
         });
         const std::string where = most == ledger.entries.end() || !(most->power > 0)
                                       ? ""

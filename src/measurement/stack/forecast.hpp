@@ -15,7 +15,7 @@ namespace vkfv::measurement {
 
 struct Forecast {
     std::string device;
-    int devices = 1; // that share the images, each as fast as the probe's
+    int devices = 1; // number that work at a time, each as fast as the probe's
     int images = 1;
     std::uint64_t rays_per_image = 0; // launched
 
