@@ -1,4 +1,5 @@
-# What `cmake --install` puts where, and the Debian package that `cpack -G DEB` makes of it (tools/package does both).
+# The places where `cmake --install` puts files, and the Debian package that `cpack -G DEB` makes of it (tools/package
+# does both).
 include(GNUInstallDirs)
 
 set(assets objectives tube_lenses illuminators elements glasses specimens stacks schemas)

@@ -116,8 +116,8 @@ TEST(CameraStack, ThePieceOfOnesOwnMicroscopeHasItsStep) {
     EXPECT_THAT(read_file(folder / "out/images/z_0000.tif"), HasSubstr("values=grey values in DN"));
 }
 
-// Neither the type of the files' pixels, since whole grey values are the same in float32, nor where they are evaluated
-// is a part of what is measured.
+// Heights depend neither on the type of the files' pixels, since whole grey values are the same in float32, nor on
+// where the images are evaluated.
 TEST(CameraStack, IsEvaluatedToTheSameBitsOfAnyPixelTypeOnHostAndDevice) {
     const auto folder = fresh_folder("camera_types");
     write_file(folder / "c.toml", with_camera());

@@ -108,7 +108,7 @@ TEST_F(Cluster, ShardsMergeToTheBytesOfOneRun) {
     }
 }
 
-// What the traced instrument is besides that of the configuration: several, and of pixels without gaps.
+// Shards of several sources, and of pixels with gaps between them, merge to the bits of the whole stack too.
 TEST_F(Cluster, ShardsOfSeveralSourcesAndPixelsWithGapsMergeToo) {
     auto text = replaced(small_configuration, "[source]\n", "[[source]]\n");
     text = replaced(text, "wavelength_um = 0.5876\n",
@@ -331,7 +331,7 @@ TEST_F(Cluster, TheLogTellsOfEachImageInJson) {
         EXPECT_GT(image["detected_W"].get<double>(), 0);
     }
     EXPECT_EQ(events["image"].back()["done"], 5);
-    // What a command ends with, too.
+    // A command that fails ends its log with the error and the exit code.
     const auto failed = stack("out", {"--log-json", "--seed", "9"});
     EXPECT_EQ(failed.exit_code, 2);
     const auto last = failed.standard_error.rfind('{');
@@ -342,7 +342,7 @@ TEST_F(Cluster, TheLogTellsOfEachImageInJson) {
 }
 
 TEST_F(Cluster, AForecastTellsWhatTheStackThenTakes) {
-    // Of rays alone, whose noise is that of their number; waves spread it.
+    // Without diffraction the noise of an image is that of the number of its rays; waves would spread it over pixels.
     const Words settings = {"--set", "detector.pixels=64", "--rays", "2e6", "--set", "diffraction.model=none"};
     Words check = {"check", "c.toml", "--forecast", "--json", "--out", "f/out"};
     check.insert(check.end(), settings.begin(), settings.end());

@@ -1,5 +1,5 @@
-// One mistake is told once, whatever else depends on it: every value of every example is damaged by itself, and every
-// key misspelt.
+// A mistake is told once, whatever else depends on it: every value of every example is damaged by itself, and every key
+// misspelt.
 #include "app/program.hpp"
 #include "configuration/configuration.hpp"
 

@@ -76,7 +76,7 @@ TEST(Configuration, CanonicalTextReadsBackToItself) {
     EXPECT_EQ(first.canonical, second.canonical);
     EXPECT_EQ(first.identity, second.identity);
     EXPECT_EQ(first.scan->z_step, second.scan->z_step);
-    // As stack.toml in the output folder, it continues the stack there.
+    // The canonical text is kept as stack.toml in the output folder; read from there, it continues the stack there.
     EXPECT_EQ(second.output_directory, second.file.parent_path());
     // Defaults are written out.
     EXPECT_THAT(first.canonical, HasSubstr("max_bounces = 2\n"));
@@ -340,7 +340,7 @@ TEST(Configuration, SeveralSourcesAreRead) {
     EXPECT_NEAR(coloured.spectrum.reference_um, (3 * 0.52 + 2 * 0.5876) / 5, 1e-12);
 }
 
-// One of several is changed by its number.
+// An override changes one of several sources by its number.
 TEST(Configuration, OverridesReachOneOfSeveralSources) {
     const auto folder = fresh_folder("overridden_sources");
     write_file(folder / "c.toml", replaced(small_configuration, "[source]\n", "[[source]]\n"));
@@ -385,7 +385,7 @@ TEST(Configuration, RingLightsAimAtTheWholeSpecimen) {
     const std::vector<double> heights = {0};
     const double lit = std::hypot(2.0, 4.0);
     const double reach = lit + 1; // and half the band
-    // Of heights there is the rounding alone that the specimen's top is raised by.
+    // The surface is flat: the 1e-9 leave room for the rounding alone that the specimen's top is raised by.
     EXPECT_NEAR(assemble_instrument(configuration, specimen, heights).constants.emission_sine,
                 reach / std::hypot(reach, 12 - lit), 1e-9);
     // A focal height of 1 mm widens it.
@@ -634,7 +634,8 @@ TEST(Configuration, GeometryDigestSeesOneBitOfOneHeight) {
     EXPECT_NE(geometry_digest(one), geometry_digest(other));
 }
 
-// What is not in the working directory and begins with assets/ came with the program.
+// A path that begins with assets/ and is not in the working directory names a file that came with the program; its
+// results still go where they are asked for.
 TEST(Configuration, ResultsOfAnInstalledExampleGoWhereTheyAreAskedFor) {
     const auto before = std::filesystem::current_path();
     const auto folder = fresh_folder("installed_example");

@@ -1,4 +1,4 @@
-// What a script sees: codes, and words that say what to do.
+// A script sees the exit code of a run, and a person the words on standard error that say what to do.
 #include "app/program.hpp"
 #include "core/files/result_folder.hpp"
 

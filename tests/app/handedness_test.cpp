@@ -1,4 +1,4 @@
-// What is seen from +z with x to the right has y up, in every file.
+// Seen from +z with x to the right, y points up in every file that is written.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 #include "support/surface_files.hpp"

@@ -132,8 +132,8 @@ TEST(OpticsCommand, TellsOneWavefrontInBothTables) {
         EXPECT_NEAR(zernike.at(point + ",3,tilt y").back(), sums.tilt_y / sums.rim / sums.count, 3e-3) << point;
     }
     EXPECT_NEAR(std::sqrt(points["corner"].square / points["corner"].count), 0.1995, 2e-3);
-    // What vkfv check says of the same wavefronts is the root of the table's mean square: the map's 129 x 129 points
-    // against a quadrature.
+    // vkfv check reports the root of the mean square of the same wavefronts: the map's 129 x 129 points against a
+    // quadrature.
     const auto check = run_program({"check", stacks + "bench_paper_chain.toml", "--json"}, folder);
     ASSERT_EQ(check.exit_code, 0) << check.standard_error;
     const auto told = nlohmann::json::parse(check.standard_output);

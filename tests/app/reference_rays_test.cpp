@@ -77,8 +77,8 @@ Differences compare_with_reference(const Scope& scope, const std::vector<std::st
 
 class ReferenceRays : public testing::TestWithParam<Scope> {};
 
-// What two double programs that order their sums differently may differ by after some
-// 350 mm of path and thirty surfaces, with a margin of a thousand.
+// Two programs in double that order their sums differently may differ by rounding after some 350 mm of path and thirty
+// surfaces; the limits leave a margin of a thousand.
 TEST_P(ReferenceRays, AgreeInDouble) {
     const auto found = compare_with_reference(GetParam(), {});
     EXPECT_GT(found.rays, 1900);

@@ -17,7 +17,7 @@ bool has_chromium_package() {
     return read_file("/etc/os-release").find("\nID=ubuntu") == std::string::npos;
 }
 
-// What does not hold, if anything; none: there is no browser, and none to be installed.
+// The checks of a report that do not hold, as text; none if there is no browser and none has to be installed.
 std::optional<std::string> failures_of(const std::filesystem::path& results) {
     const auto told = results.parent_path() / "checks.txt";
     const std::string command = "python3 " VKFV_SOURCE_DIR "/tests/acceptance/check_report --seconds 30 '" +

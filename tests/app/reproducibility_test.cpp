@@ -1,4 +1,4 @@
-// The same bits, however a stack came about; and the same image by either traversal.
+// A stack has the same bits however it came about, and an image is the same by either traversal.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 
@@ -48,8 +48,8 @@ std::map<std::string, std::string> bytes_of(const std::filesystem::path& folder)
     return bytes;
 }
 
-// The same of stacks in folders of other names, which stand on their pictures, and of other batches, which their
-// configuration tells.
+// The bytes of all files that name neither their folder, as pictures and reports do, nor the batch, as the
+// configuration does, and of which no checksum depends on those.
 std::map<std::string, std::string> bytes_but_names(const std::filesystem::path& folder) {
     auto bytes = bytes_of(folder);
     for (const char* name : {"topography.svg", "report.html", "stack.toml", ".stack.toml", "checksums.sha256"}) {

@@ -102,7 +102,8 @@ TEST(Standard, ATracedGrooveHasItsDepthAndWidth) {
 TEST(Standard, ATracedSphereHasItsRadius) {
     const auto results = results_of("sphere", "representation = \"analytic\"\nradius_um = 120\nheight_um = 6", 10);
     expect_dimension(results, "radius", 120, 120);
-    // Its top lies 4 steps from the end of the scan: drawn towards it, the sphere is 4 standard errors too small.
+    // The sphere's top lies 4 steps from the end of the scan: were it drawn towards the end, the sphere would be 4
+    // standard errors too small.
     const auto radius = dimension(results, "radius");
     EXPECT_NEAR(radius.at("measured").get<double>(), 120, 2 * radius.at("standard_error").get<double>());
     EXPECT_LT(dimension(results, "form deviation Sq").at("measured").get<double>(), 0.2);

@@ -109,7 +109,7 @@ TEST(Verify, RepairsTheConfigurationOfWholeImagesAlone) {
     EXPECT_EQ(read_file(out / "stack.toml.before_repair"), edited);
     EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 0);
 
-    // What was lost as a whole comes back too, and results say so.
+    // A file that was lost as a whole is repaired too, and the results say so.
     fs::remove(stack);
     EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 4);
     EXPECT_THAT(run_program({"--stack", "c.toml"}, folder).standard_error, HasSubstr("vkfv verify out --repair"));

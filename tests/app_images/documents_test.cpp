@@ -1,4 +1,4 @@
-// What the documents say holds: their links lead somewhere, their commands run, their configurations are valid.
+// The statements of the documents hold: their links lead somewhere, their commands run, their configurations are valid.
 //
 // Commands stand in fenced blocks without a language. An HTML comment on the line before a block, which readers do not
 // see, tells how it is run:
@@ -102,7 +102,7 @@ Document parse_document(const std::string& text) {
     return document;
 }
 
-// As GitHub makes them: lower case, punctuation left out, spaces as '-', a number behind those that repeat.
+// GitHub's anchors of the headings: lower case, punctuation left out, spaces as '-', a number behind those that repeat.
 std::set<std::string> anchors_of(const Document& document) {
     std::map<std::string, int> seen;
     std::set<std::string> anchors;
@@ -122,7 +122,7 @@ std::set<std::string> anchors_of(const Document& document) {
     return anchors;
 }
 
-// What is wrong with the links of a document that lies at `file`.
+// The broken links of a document that lies at `file`, each with its line and the reason.
 std::vector<std::string> broken_links(const fs::path& file, const std::string& text) {
     static const std::regex elsewhere("[a-z]+:.*");
     std::vector<std::string> broken;

@@ -84,7 +84,7 @@ Picture stored_as(const Picture& seen, int orientation) {
 
 using Write = std::function<void(const fs::path&, const Picture&)>;
 
-// One format, or one kind of it.
+// A format of images, or a variant of one, and how to write it.
 struct Kind {
     std::string name; // of the file
     Write write;
@@ -228,7 +228,8 @@ void write_pfm(const fs::path& path, const Picture& picture) {
     write_file(path, bytes);
 }
 
-// One grey channel, not packed (Adobe Photoshop file format: header, no palette, no resources, no layers, pixels).
+// Writes a grey channel that is not packed (Adobe Photoshop file format: header, no palette, no resources, no layers,
+// pixels).
 void write_psd(const fs::path& path, const Picture& picture) {
     write_file(path, "8BPS" + big_endian(1, 2) + std::string(6, '\0') + big_endian(1, 2) +
                          big_endian(static_cast<std::uint32_t>(picture.rows)) +
@@ -585,7 +586,7 @@ TEST(ImageFormats, AStackOfJpegsHasTheHeightsOfTheSameImages) {
         const auto file = folder / fmt::format("jpeg/i{}.jpg", k);
         write_by_library(file, picture, {.format = "jpeg", .words = {{"compression", "jpeg:90"}}});
         EXPECT_GT(fs::file_size(file) + 2000 * static_cast<unsigned>(std::abs(k - 4)), stream_block);
-        // What the library says of the file by its name, without vkfv.
+        // The pixels that the image library reads from the file by its name, without vkfv, are the truth.
         const auto input = OIIO::ImageInput::open(file.string());
         ASSERT_TRUE(input) << OIIO::geterror();
         std::vector<std::uint8_t> decoded(side * side);

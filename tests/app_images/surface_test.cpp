@@ -70,14 +70,15 @@ TEST_F(Surface, ReportsTheParametersOfASine) {
     EXPECT_NEAR(figures["pitch_um"][1], 2, 1e-12);
     EXPECT_EQ(figures["not_measured_points"], 0);
     EXPECT_EQ(figures["treatment"]["form"], "plane");
-    // Of a sampled sine: Sq = A / sqrt 2, its outermost points 15 degrees beside the extremes. Files of metres round to
-    // 1e-16 of 3 um.
+    // A sampled sine has Sq = A / sqrt 2, and its outermost points lie 15 degrees beside the extremes. Files of metres
+    // round to 1e-16 of 3 um.
     const auto& parameters = figures["parameters"];
     EXPECT_NEAR(parameters["Sq_um"], 0.5 / std::sqrt(2), 1e-9);
     EXPECT_NEAR(parameters["Sku"], 1.5, 1e-9);
     EXPECT_NEAR(parameters["Sz_um"], std::cos(15 * radians_per_degree), 1e-9);
     EXPECT_NEAR(parameters["Std_deg"], 90, 1e-9); // the lay runs along y
-    // As in compare_test: sections of 23.8 um, at which the Gaussian leaves 0.935 of the amplitude.
+    // The closed form is that of compare_test: sections of 23.8 um, at which the Gaussian leaves 0.935 of the
+    // amplitude.
     EXPECT_NEAR(figures["profile"]["Ra_um"], 2 / pi * 0.5 * 0.935, 0.02);
     // The wrong twin: the tilt of 1.2 and 1 um over the surface is left.
     EXPECT_GT(report({"wavy.x3p", "--form", "none"})["parameters"]["Sq_um"], 0.5);
@@ -197,7 +198,7 @@ TEST_F(Surface, OfOneRowHasWhatOneRowHas) {
     row.height.rows = 1;
     row.height.values.resize(120);
     surface::write_surface(folder / "row.sdf", row);
-    // Its plane is settled along it, and takes the tilt off.
+    // The row's own line is fitted as its form, and takes the tilt off.
     EXPECT_NEAR(report({"row.sdf"})["parameters"]["Sq_um"], 0.5 / std::sqrt(2), 1e-9);
     HeightMap column = row;
     std::swap(column.height.columns, column.height.rows);
@@ -216,7 +217,7 @@ TEST_F(Surface, DoublesOfAnImageKeepTheirDigits) {
     ASSERT_TRUE(output->write_image(OIIO::TypeDesc::DOUBLE, heights.data()));
     ASSERT_TRUE(output->close());
     const auto figures = report({"doubles.tif", "--pitch_um", "1", "--unit_um", "1"});
-    // Of rounding 25000 um to double 4e-12 um are left.
+    // Rounding 25000 um to double leaves 4e-12 um.
     EXPECT_NEAR(figures["parameters"]["Sq_um"].get<double>(), 1e-3 / std::sqrt(2.0), 1e-9);
 }
 

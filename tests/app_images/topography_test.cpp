@@ -573,7 +573,7 @@ TEST(Topography, DarkAndFlatFieldAreTakenOff) {
     constexpr double rounding = 5e-6; // mm, of values to whole numbers
     EXPECT_LT(worst, rounding);
     EXPECT_GT(worst_raw, rounding); // wrong twin: nothing taken off
-    // Of another size, unlit, or lit.
+    // Images that are taken off must exist, have the stack's size, and be dark or lit as their option says.
     write_file(folder / "small.pgm", "P5\n2 2\n255\n\1\2\1\2");
     for (const auto& [option, file, words] : std::vector<std::array<std::string, 3>>{
              {"--dark", "small.pgm", "24 x 24 pixels"}, {"--flat-field", "none.tif", "no such file"}}) {
@@ -587,7 +587,8 @@ TEST(Topography, DarkAndFlatFieldAreTakenOff) {
     EXPECT_THAT(unlit_flat.standard_error, HasSubstr("more light"));
 }
 
-// A stack.toml that claims more pixels, or more images, than there are: refused before any work is sized by it.
+// Exposures that jump between two images and saturated pixels are reported as faults of the images. The wrong twin, the
+// stack without either, gives no warning.
 TEST(Topography, FaultsOfTheImagesAreTold) {
     const auto folder = fresh_folder("faults");
     auto stack = stack_values(40000);
@@ -632,7 +633,7 @@ TEST(Topography, WorkIsSizedByTheImages) {
     };
     refused("\npixels = 32\n", "\npixels = 16000\n", "16000 x 16000, as stack.toml claims");
     refused("\nz_stop_um = 12.5\n", "\nz_stop_um = 5000\n", "as stack.toml claims");
-    // What is for images alone is refused beside a stack.toml, not passed over.
+    // Options for images alone are refused beside a stack.toml, not passed over.
     write_file(file, claims);
     for (const char* option : {"--dark", "--flat-field"}) {
         const auto beside = run_program({"--topography", "stack", "--out", "out", option, "none.tif"}, folder);
@@ -723,7 +724,7 @@ TEST(ImageOrder, TellsAResultFromASeries) {
     EXPECT_THAT(scan::of_one_series({"z-1", "z+2", "z3"}), testing::Each(true));
     EXPECT_THAT(scan::of_one_series({"a1", "b1", "a2", "b2", "a3"}), testing::Each(true)); // no series
     EXPECT_THAT(scan::of_one_series({"a1_1", "a2_2", "a3_1", "a4_2", "out"}), testing::Each(true));
-    // What focus-stack leaves beside the photographs.
+    // focus-stack leaves aligned copies and its result beside the photographs.
     EXPECT_THAT(scan::several_series({"aligned_1", "pcb_1", "aligned_2", "pcb_2", "pcb_3", "aligned_3", "output"}),
                 testing::ElementsAre(0, 1));
     EXPECT_THAT(scan::several_series({"a1", "b1", "a2", "b2", "a3"}), testing::IsEmpty());

@@ -1,4 +1,5 @@
-// What is timed must be what is said: the rays' places and directions, seen from the share that meets.
+// The rays that the bench times must be those that it describes: the share that meets the specimen, by a quadrature
+// over places and directions, shows whether they are.
 #include "bench/hit_times.hpp"
 
 #include <gmock/gmock.h>
@@ -59,7 +60,7 @@ TEST(HitTimes, TimesTheRaysThatItSays) {
         }
         // From a plane nothing comes back.
         EXPECT_EQ(time_hits(plain(0), options(traversal), 0.4, HitOrder::leaving, 1).share_met, 0);
-        // Those that start within rounding of a side may leave by it: a draw's last cell, 2^-21 of each of four sides.
+        // Rays that start within rounding of a side may leave by it: a draw's last cell is 2^-21 of each of four sides.
         EXPECT_NEAR(time_hits(plain(0), options(traversal), 0.4, HitOrder::random, 1).share_met, 1, 2e-5);
     }
 }

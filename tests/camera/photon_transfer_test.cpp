@@ -85,7 +85,8 @@ TEST(PhotonTransfer, DarkNoiseIsBoundedWhereQuantisationDominates) {
                             1e-12);
             } else {
                 EXPECT_GT(found.read_noise.error, 0);
-                // The same share of all gains' error, which is some 2 % of images of this size.
+                // The read noise is off by no more than the share by which all gains are off, some 2 % for images of
+                // this size: five of these.
                 EXPECT_NEAR(found.read_noise.value, read_noise, 0.1 * read_noise);
             }
         }

@@ -35,7 +35,7 @@ class ScatterKeys : public testing::Test {
                          "[scan]\nz_start_um = -2\nz_stop_um = 2\nz_step_um = 1\n" +
                          material);
     }
-    // What is written out reads back to the same.
+    // Reads a configuration, whose canonical text must read back to the same, and gives its material.
     specimen::Material material(const std::string& text) const {
         const auto configuration = read(text);
         const auto again = read_text(configuration.canonical);

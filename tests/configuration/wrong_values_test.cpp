@@ -37,7 +37,7 @@ const std::map<std::string, std::string> least_around = {
     {"sweep.parameter", "[sweep]\nz_um = 0\n"},
 };
 
-// What a key needs beside it to be read at all.
+// The lines that must stand beside a key for it to be read at all.
 const std::map<std::string, std::string> beside_it = {
     {"objective.tube_length_mm", "magnification = 10\n"},
     {"specimen.font", "text = \"a\"\n"},

@@ -86,7 +86,8 @@ TEST(Progress, ABarRenewsOneLineOfATerminal) {
 
 TEST(Progress, ABarIsRenewedAtMostTenTimesASecond) {
     const std::string text = report(Progress::Style::bar, 1001, 0, 1ms);
-    // One second: the start, one each 100 ms (the last of them is the end's), and never one an image.
+    // The run of 1.001 s has a return at its start, ten at intervals of 100 ms and a last one at its end, but not one
+    // an image.
     EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 12);
 }
 

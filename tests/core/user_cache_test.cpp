@@ -1,4 +1,4 @@
-// What is kept for the next run: given back unharmed, or not at all.
+// The cache gives entries back to the next run unharmed, or not at all.
 #include "support/own_cache.hpp"
 
 #include <cstddef>

@@ -38,8 +38,8 @@ TEST(Levels, ARidgeHasItsHeight) {
     EXPECT_NEAR(height->areal, 0.002, 1e-12);
 }
 
-// What ISO 5436-1 leaves out, it leaves out for this: with corners rounded over a fifth of the width the regions see
-// nothing of them, while levels from all points are off by a tenth.
+// ISO 5436-1 leaves out the regions beside the edges because they may be rounded: with corners rounded over a fifth of
+// the width the evaluated regions see nothing of them, while levels from all points are off by a tenth.
 TEST(Levels, RoundedEdgesDoNotCount) {
     const Groove groove{.frame = {}, .width = 0.06, .depth = 0.005};
     const HeightMap map =

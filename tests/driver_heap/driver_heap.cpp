@@ -258,7 +258,7 @@ int find_driver(dl_phdr_info* library, std::size_t, void* ranges) {
     return 0;
 }
 
-// Also forgets those that are no longer there.
+// Finds the drivers that are loaded now, and forgets those that are no longer there.
 void find_drivers() {
     Ranges ranges{};
     dl_iterate_phdr(find_driver, &ranges);

@@ -27,7 +27,7 @@ using Arguments = std::vector<std::string>;
 
 constexpr int run_failed = 4;
 
-// What a command writes lies here, below the folder in which it runs.
+// The folder of a command's results, below the folder in which it runs.
 const std::string results = "results";
 
 Arguments joined(Arguments arguments, const Arguments& further) {

@@ -109,7 +109,7 @@ class VulkanFaults : public testing::Test {
             for (const std::string& effect : effects) {
                 Fault fault = call;
                 fault.effect = effect;
-                // Those that pass make it go on; of those that do not, it tells.
+                // A fault that may pass must not stop the program; a fault that lasts must end it with a message.
                 fault.lasts = !varies_ && may_pass_next_time(fault) && turn / 4 % 2 == 1;
                 // A device that others use too gets its work in other pieces: the last call of the run that has fewer.
                 std::optional<std::string> outcome;

@@ -56,7 +56,7 @@ HeightMap letter() {
     return map;
 }
 
-// What a format keeps. Gwyddion shows a field's first row on top.
+// The precision with which a format keeps a map. Gwyddion shows a field's first row on top.
 struct Kept {
     double unit = 1e-3;    // of Gwyddion's heights per mm
     double height = 1e-20; // largest deviation of a height there

@@ -85,8 +85,8 @@ TEST(GwyddionParameters, AreaIsTheSameButForItsBordersAndTriangles) {
     const double area = map.columns() * map.pitch_x * map.rows() * map.pitch_y;
     const double theirs = gwy_data_field_get_surface_area(heights.get()) / area - 1;
     const HybridParameters p = hybrid_parameters(map);
-    // It adds half a cell, level across the border, around the map: 1 / 300 + 1 / 240 of the area, whose excess is
-    // between none and twice the mean.
+    // Gwyddion adds half a cell, level across the border, around the map: 1 / 300 + 1 / 240 of the area, whose excess
+    // is between none and twice the mean.
     EXPECT_NEAR(p.sdr, theirs, 0.0095 * p.sdr);
     // The wrong twin, a pitch 3 % longer.
     HeightMap longer = map;

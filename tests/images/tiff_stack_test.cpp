@@ -80,7 +80,7 @@ TEST_F(TiffStacks, ValuesStandInOneBlockTheHighestRowFirst) {
     EXPECT_EQ(last, image(2)(2, 0));
 }
 
-// Its values are not written: 6 GB.
+// The head alone is made: the values would be 6 GB.
 TEST(TiffStack, IsABigTiffBeyondFourGigabytes) {
     TiffStack stack = three_of(PixelBits::float32);
     const auto version = [&] {

@@ -108,7 +108,7 @@ std::string encoded(std::span<const Grid<Value>> channels, OIIO::TypeDesc type, 
     return {bytes.begin(), bytes.end()};
 }
 
-// What a reader gives or says.
+// The result of a reader as text, or the message of its error.
 template <class Read>
 std::string outcome(const Read& read) {
     try {
@@ -184,7 +184,7 @@ TEST_F(PlainTiffs, OpenImageIOReadsWhatIsWritten) {
             EXPECT_EQ(read.spec.get_float_attribute("XResolution"), 5000.0f);
             EXPECT_EQ(read.spec.get_float_attribute("YResolution"), 2500.0f);
             EXPECT_TRUE(read.bits == bits_of(from_top(std::span(image)))) << columns << " x " << rows;
-            // Of two channels libtiff cannot say what the second is: OpenImageIO reads them.
+            // libtiff cannot say what the second of two channels is: OpenImageIO reads them.
             EXPECT_EQ(plain_tiff(bytes, TiffPart::all).has_value(), channels != 2);
             expect_as_the_module(bytes, fmt::format("{} x {} x {}", columns, rows, channels));
         }

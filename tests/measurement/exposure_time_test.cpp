@@ -1,4 +1,4 @@
-// What sets an exposure: the brightest light of an image, though its rays are few.
+// The brightest light of an image sets the exposure, though its rays are few.
 #include "measurement/image/camera_images.hpp"
 
 #include <gtest/gtest.h>

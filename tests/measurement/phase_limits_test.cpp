@@ -106,7 +106,8 @@ TEST(PhaseLimits, ScatterFillsThePupilAsItsLobeDoes) {
         ++median;
     }
     const double expected = static_cast<double>(median) / steps * std::sqrt(2.0);
-    // Of N = 7400 paths the median has the standard error 1 / (2 f sqrt(N)), f its density: 0.0035 here. Four of them.
+    // The median of N = 7400 paths has the standard error 1 / (2 f sqrt(N)), f its density: 0.0035 here, of which four
+    // are allowed.
     EXPECT_NEAR(limits_of(1, sinusoid(0.001, of_model("henyey-greenstein", {g}))).scatter_fill, expected, 0.014);
     EXPECT_LT(expected, 0.5);
     // Far off its axis the same lobe is broad: what a ring light from 45 degrees scatters into the aperture fills it.

@@ -1,9 +1,9 @@
-// What the errors of a stage do to heights, by the peak fit that evaluations use, against closed forms. The focus curve
-// is a Gaussian of standard deviation w around the surface; least squares weighs what an image says of its place by the
+// The errors of a stage move heights, by the peak fit that evaluations use, as closed forms say. The focus curve is a
+// Gaussian of standard deviation w around the surface; least squares weighs what an image says of its place by the
 // square of the curve's slope, u^2 exp(-u^2) with u = z / w:
 //   jitter:  sigma sqrt(D / w) sqrt(integral u^4 exp(-2 u^2) du) / integral u^2 exp(-u^2) du  = 0.547 sigma sqrt(D / w)
-//   noise:   (sigma_F / A) sqrt(w D / integral u^2 exp(-u^2) du)                              = 1.062 (sigma_F / A)
-//   sqrt(w D) a sine of a rad/mm along z:  (1 - (a w)^2 / 2) exp(-(a w)^2 / 4) of its amplitude
+//   noise:   (sigma_F / A) sqrt(w D / integral u^2 exp(-u^2) du)                    = 1.062 (sigma_F / A) sqrt(w D)
+//   a sine of a rad/mm along z:  (1 - (a w)^2 / 2) exp(-(a w)^2 / 4) of its amplitude
 #include "core/mathematics/units.hpp"
 #include "focus/focus.hpp"
 #include "scan/stage.hpp"

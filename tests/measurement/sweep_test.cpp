@@ -68,7 +68,7 @@ TEST_F(SweepOfStacks, FiguresAreThoseOfItsFiles) {
     }
     EXPECT_EQ(figures.at("rms deviation / um").get<double>(), rms / 2);
 
-    // Of two values the variance is half the square of their difference.
+    // The variance of two values is half the square of their difference.
     const auto a = surface::read_surface(stack(0) / "topography.tif").map.height.values;
     const auto b = surface::read_surface(stack(1) / "topography.tif").map.height.values;
     double variance = 0, points = 0;

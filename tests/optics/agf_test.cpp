@@ -71,7 +71,7 @@ TEST(Agf, ReadsEveryEncodingAndLineEnd) {
     expect_catalogue(parse_agf("\xef\xbb\xbf" + catalogue, "x.agf"));
     expect_catalogue(parse_agf(utf16(catalogue, false), "x.agf"));
     expect_catalogue(parse_agf(utf16(catalogue, true), "x.agf"));
-    // The same letter of a name in Latin-1, UTF-8 and UTF-16.
+    // A letter of a name is the same in Latin-1, UTF-8 and UTF-16.
     const std::string rest = " 5\nCD 1.5\nLD 1 2\n";
     const std::string expected = "\xc3\xa9";
     EXPECT_EQ(parse_agf("NM \xe9" + rest, "x").media[0].name, expected);

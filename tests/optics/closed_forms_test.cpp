@@ -1,4 +1,5 @@
-// What is decentred, tilted or put between, against closed forms; through single parts and whole instruments.
+// Parts that are decentred, tilted or put between others move light as closed forms say, alone and in whole
+// instruments.
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
 #include "optics/instrument/instrument.hpp"
@@ -28,7 +29,7 @@ std::vector<physics::f64::Surface> linked(const Prescription& prescription) {
     return surfaces_of(part);
 }
 
-// Of vanishing thickness, biconvex.
+// A biconvex lens of vanishing thickness, displaced by `change`.
 Prescription thin_lens(const CoordinateBreak& change) {
     Prescription lens;
     lens.medium_before = Medium::air();
@@ -256,7 +257,7 @@ TEST(TiltedParts, TurnTheRayThroughTheVertexByTheThirdOrder) {
     EXPECT_GT(std::abs(landing(ideal([](auto&) {})).x - expected), 1e-3); // wrong twin: untilted
 }
 
-// Of a real tube lens the nodal point stays, as seen from the vertex that the tilt is about: the image moves with it.
+// The nodal point of a real tube lens moves, seen from the vertex that the tilt is about, and takes the image along.
 TEST(TiltedParts, MoveTheImageWithTheNodalPoint) {
     const auto straight = assemble(test::microscope());
     const double tilt = 1e-3;

@@ -43,8 +43,8 @@ TEST(FieldTiles, AreBlendedBilinearly) {
     EXPECT_EQ(beyond.front().tile, 24);
 }
 
-// What is the mirror image of another point's is what the point's own wavefront gives; but for points of the lattice on
-// the rim, which is known to 5e-10 of its radius.
+// The filters of a tile that is another one's mirror image are those of the point's own wavefront, except for points of
+// the lattice on the rim, which is known to 5e-10 of its radius.
 TEST(FieldTiles, OfASymmetricTrainAreMirrorImages) {
     const Instrument instrument = assemble(test::wide_microscope());
     const CellTransfer axis(instrument, 4);

@@ -235,8 +235,8 @@ TEST(ImageQuality, OfAnIndependentTracer) {
     EXPECT_GT(std::abs(at_edge.rms - on_axis.rms), 0.01 * on_axis.rms);
 }
 
-// The same reference of the other objectives. The wrong twin is the angle characteristic of the image: 0.0177 waves for
-// the 20x and 0.0129 for the 100x.
+// tests/references/wavefront_reference.py prints the values of the other objectives too. The wrong twin is the angle
+// characteristic of the image: 0.0177 waves for the 20x and 0.0129 for the 100x.
 TEST(ImageQuality, WavefrontsOfAnIndependentTracer) {
     const struct {
         const char* objective;

@@ -30,7 +30,7 @@ std::vector<physics::f64::Surface> illumination_train(const Instrument& instrume
     return {first, first + instrument.constants.illumination_count};
 }
 
-// Of two other programs, with every printed digit. Their sines are for a beam of given diameter; ours come
+// Two other programs print these values, here with every digit. Their sines are for a beam of given diameter; ours come
 // from the semi-diameters, which differ from it by what the tables were rounded or widened.
 TEST(Instrument, FirstOrderOfTheMicroscopes) {
     const auto ten = assemble(test::microscope("10x_0.28"));
@@ -236,8 +236,8 @@ TEST(BestFocus, OfAnIndependentTracer) {
     EXPECT_NEAR(focus("100x_0.83"), -0.222717e-3, 5e-6);
 }
 
-// What the wavefront's polynomials over the traced pupil say, in the field's corner, too, and of several wavelengths:
-// the mean square of W without piston and tilt is least there.
+// Best focus is where the mean square of W without piston and tilt is least, by the wavefront's polynomials over the
+// traced pupil: on the axis and in the field's corner, for several wavelengths together.
 TEST(BestFocus, IsWhereTheWavefrontVariesLeast) {
     auto description = test::microscope("5x_0.15");
     description.spectrum = Spectrum::lines({0.48, 0.59, 0.65}, {1, 2, 1});

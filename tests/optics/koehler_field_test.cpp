@@ -109,7 +109,7 @@ TEST(KoehlerField, IsUniformWithinTheStatisticalError) {
     EXPECT_LT(p_of(cells, 0.15), false_positive_rate); // wrong twin: less light at the rim
 }
 
-// What the lenses themselves leave: the pupil's aberrations over the field.
+// The irradiance of the real lenses varies over the field by the pupil's aberrations alone.
 TEST(KoehlerField, IsUniformByTheRadianceThatReachesIt) {
     const auto description = koehler_20x();
     const auto instrument = assemble(description);

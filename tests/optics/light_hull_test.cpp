@@ -1,7 +1,7 @@
-// What an instrument takes for the exit pupil, the source as the specimen sees it, and the gate holds all light of wide
-// spectra, of small sources, of large fields and of parts beside their places: no random ray, and none that an
-// adversary makes of them, is outside. Wrong twin: the same instrument at its reference wavelength alone, which loses
-// light.
+// The bounds that an instrument takes for the exit pupil, for the source as the specimen sees it, and for the gate hold
+// all light of wide spectra, of small sources, of large fields and of parts beside their places: no random ray, and
+// none that an adversary makes of them, is outside. The wrong twin is the same instrument at its reference wavelength
+// alone, which loses light.
 #include "optics/aim/light_hull.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -171,7 +171,8 @@ class TurnedLight {
     double source(const Coordinates& at) const {
         const auto& optics = turned_.optics;
         const double plane = height(at);
-        // As seen by a ray of the detector; the turned frame is the specimen's turned half a turn about x.
+        // The place is one that a ray of the detector sees; the turned frame is the specimen's turned half a turn about
+        // x.
         const Seen seen = seen_by_detector({at[0], at[1], 0.5, 0.5, at[4], at[5]});
         const glm::dvec2 turned_place = seen.end + (instrument_.front_vertex_height - plane) * seen.end_slope;
         const glm::dvec2 place = {turned_place.x, -turned_place.y};
@@ -262,8 +263,8 @@ TEST(LightHull, HoldsAllLightOfWideSpectra) {
     EXPECT_GE(too_small_gates, 2);
 }
 
-// Of a stop alone the steepest light goes from one rim to the other; the farthest that it comes, beyond, lies on the
-// same line. A stop beside the axis is farther from one side of the disc.
+// The steepest light through a stop alone goes from one rim of the disc to the other rim of the stop, and the farthest
+// place that it comes to lies on the same line. A stop beside the axis is farther from one side of the disc.
 TEST(LightHull, IsThatOfAStop) {
     for (const double aside : {0.0, 0.7}) {
         SCOPED_TRACE(aside);

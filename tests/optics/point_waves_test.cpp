@@ -117,7 +117,7 @@ TEST(PointSpread, HasTheTransferFunctionAsItsSpectrum) {
     const PointWaves image = PointWaves(instrument, {edge, -edge}).at_height(-1e-3);
     const double reach = 10e-3;
     const PointSpread spread = image.point_spread(reach);
-    // What lands beyond 14 of the pattern's rings is missing.
+    // The quadrature ends at 14 of the pattern's rings: light that lands beyond is missing.
     const glm::dvec2 frequency(0.3 * image.cutoff(), 0.2 * image.cutoff());
     std::complex<double> sum = 0;
     constexpr int rings = 48;

@@ -52,7 +52,7 @@ TEST(Pose, TiltsAboutTheNewAxesInOrder) {
     expect_near(tilted.origin, tilted.axes * glm::dvec3(1, 2, 0));
 }
 
-// The same numbers with their signs changed, the other way round, bring the frame back.
+// A break of the same numbers with their signs changed and in reversed order brings the frame back.
 TEST(Pose, IsRestoredByTheReturnBreak) {
     const Pose start = Pose{{3, -1, 7}}.turned({.tilt_x = 0.5, .tilt_y = -0.2});
     const CoordinateBreak change{.decentre_x = 1, .decentre_y = 2, .tilt_x = 0.2, .tilt_y = 0.4, .tilt_z = 0.7};

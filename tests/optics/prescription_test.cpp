@@ -64,7 +64,7 @@ TEST(Prescription, AssetsHaveTheirFocalLengths) {
         double efl;
         double bfd;
     };
-    // Of objectives bfd is on the side of the specimen: the front focal distance in imaging order.
+    // The bfd of an objective is on the side of the specimen: the front focal distance in imaging order.
     for (const Row& row : {Row{"objectives", "5x_0.15", 39.999999808, 65.90129633},
                            {"objectives", "10x_0.28", 20.000007181, 16.144167633},
                            {"objectives", "20x_0.41", 10.000000444, 7.383296607},
@@ -147,7 +147,7 @@ class WrittenPrescription : public ::testing::Test {
     void write(const std::filesystem::path& file, const std::string& text) const {
         std::ofstream(folder_ / file) << text;
     }
-    // What is wrong with a lens.toml of this text.
+    // The problem that is reported for a lens.toml of this text.
     InputProblem problem_of(const std::string& text) const {
         write("lens.toml", "source = \"a test\"\nlicence = \"none\"\n" + text);
         try {
@@ -264,7 +264,7 @@ TEST(ParsedPrescription, MediaHaveEveryForm) {
     }
 }
 
-// Its own media first, then the user's catalogues, then the built-in table.
+// A medium is looked for among the lens's own media first, then in the user's catalogues, then in the built-in table.
 TEST(ParsedPrescription, MediaAreLookedForFromTheNearest) {
     const std::string text = "source = \"s\"\nlicence = \"l\"\n[[surface]]\nmedium = \"N-BK7\"\n";
     const auto index = [](const std::string& lens, const GlassCatalog& glasses) {

@@ -50,7 +50,7 @@ std::vector<double> counts(const std::vector<double>& wavelengths, double low, d
     return result;
 }
 
-// What a cumulative distribution says of the same.
+// The expected counts in the same cells, by a cumulative distribution.
 std::vector<double> expected(const std::function<double(double)>& cumulative, double low, double high, int cells) {
     std::vector<double> result = {draws_made * cumulative(low)};
     for (int i = 0; i < cells; ++i) {

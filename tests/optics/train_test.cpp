@@ -40,8 +40,8 @@ std::vector<physics::f64::Surface> linked(std::vector<PlacedSurface> part) {
     return surfaces_of(part);
 }
 
-// What tests/references/trace_decentred_doublet.py prints: x, y on the plane z = 150 mm, direction cosines, optical
-// path.
+// The expected values are printed by tests/references/trace_decentred_doublet.py: x, y on the plane z = 150 mm,
+// direction cosines, optical path.
 TEST(Train, DecentredDoubletAgreesWithAnIndependentTracer) {
     struct Row {
         glm::dvec3 position;
@@ -99,7 +99,7 @@ TEST(Train, DecentredDoubletAgreesWithAnIndependentTracer) {
     EXPECT_GT(worst(twin).first, 1e-5);
 }
 
-// One surface, tilted and decentred: the ray brought into its frame by hand.
+// A ray is brought into the frame of a tilted and decentred surface by hand.
 TEST(Train, LinkBringsARayIntoEachSurfacesFrame) {
     const Pose pose = Pose{{0.4, -0.3, 12}}.turned({.tilt_x = 0.2, .tilt_y = -0.1, .tilt_z = 0.5});
     const Pose entry = Pose{{-0.2, 0.1, 3}}.turned({.tilt_y = 0.07});

@@ -108,7 +108,7 @@ TEST_P(Ideal, LeavesDebyesDefocusAlone) {
             EXPECT_NEAR(glm::length(wavefront.image_slope(p)),
                         0.1 * glm::length(p) / std::sqrt(1 - 0.01 * glm::dot(p, p)), 1e-9);
         }
-        // The same of a train that is entered higher: traced, not added.
+        // A train that is entered higher, traced instead of adding the defocus, gives the same path.
         Imaging imaging = imaging_of(instrument);
         const Wavefront traced(imaging, -10, z, reference_of(instrument));
         for (const glm::dvec2 p : pupil_points(traced)) {

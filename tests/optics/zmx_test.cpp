@@ -50,7 +50,7 @@ InputProblem problem_of(const std::string& bytes) {
     return {};
 }
 
-// What two imports have in common, to the last bit.
+// A digest by which two imports are compared to the last bit.
 std::string digest(const ZmxLens& lens) {
     std::string text = prescription_text(lens.prescription);
     for (const double wavelength : lens.wavelengths_um) {
@@ -354,7 +354,7 @@ TEST(Zmx, BytesThatAreNotUtf8AreLatin1) {
     EXPECT_EQ(parsed(replaced(text, "\"Biconvex singlet\"", "gro\xdf")).prescription.title, "gro\xc3\x9f");
 }
 
-// What an import says in the log.
+// The log of an import.
 std::string log_of(const std::string& bytes, std::optional<int> configuration = std::nullopt) {
     std::ostringstream log;
     const auto before = spdlog::default_logger();
@@ -495,7 +495,7 @@ TEST(Zmx, AConfigurationIsChosenByItsNumber) {
     EXPECT_EQ(third.surfaces[0].medium_after.name, "F2");
     EXPECT_EQ(third.surfaces[1].conic, -0.5);
     EXPECT_THROW(of(4), InputError);
-    // What another configuration changes and the import does not understand is no lens of it.
+    // A parameter that the import does not understand makes the configuration that has it unusable, but no other one.
     const auto with_parameter = replaced(text, "MNUM 3 2", "MNUM 3 2\nPRAM 1 3 0.5 0 0");
     EXPECT_THROW(parse_zmx(with_parameter, "lens.zmx", GlassCatalog::builtin(), 3), InputError);
     EXPECT_EQ(parse_zmx(with_parameter, "lens.zmx", GlassCatalog::builtin(), 1).prescription.surfaces[0].thickness,

@@ -48,7 +48,7 @@ TEST(Fresnel, NormalIncidence) {
     EXPECT_NEAR(expected, 0.04216, 5e-6); // its value, by hand
 }
 
-// The same from either side along one path, and against the matrix without a layer.
+// The reflectance is the same from either side along one path, and that of the characteristic matrix without a layer.
 TEST(Fresnel, EitherSideAndTheMatrixAgree) {
     for (int i = 0; i < 90; ++i) {
         const double sine = std::sin(i * M_PI / 180);
@@ -103,7 +103,7 @@ TEST(QuarterWaveLayer, NormalIncidence) {
     EXPECT_GT(layer_at(0, design / 1.02), quarter + 1e-6);
 }
 
-// Both sides, all angles, and thicknesses to many waves, total reflection included.
+// The matrix agrees from both sides, at all angles, and for thicknesses up to many waves, total reflection included.
 TEST(QuarterWaveLayer, AgreesWithTheCharacteristicMatrix) {
     double twin = 0;
     for (const double thickness : {0.0, 0.03, design / (4 * fluoride), 0.31, 7.7}) {

@@ -28,7 +28,7 @@ namespace {
 
 using Numbers = std::array<std::uint32_t, 6>; // of 21 bits
 
-// What a generator makes of (seed, image, path, block).
+// A generator of random words: a function of (seed, image, path, block).
 using Generator = std::function<uvec4(uint, uint, uint, uint)>;
 
 uvec4 philox(uint seed, uint image, uint path, uint block, int rounds) {

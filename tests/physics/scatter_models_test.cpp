@@ -56,8 +56,8 @@ double kept(const Material& material, double theta) {
     return sum * M_PI / azimuths;
 }
 
-// Of a lobe over direction cosines: numpy's Gauss points (400) along the radius by 4000 azimuths, about the mirror
-// direction's cosines out to the unit circle.
+// The share of a lobe over direction cosines that lies above the horizon, by numpy's Gauss points (400) along the
+// radius and 4000 azimuths, about the mirror direction's cosines out to the unit circle.
 struct LobeKept {
     uint model;
     double first, second, degrees, share;
@@ -70,7 +70,7 @@ constexpr LobeKept lobes_kept[] = {
     {SCATTER_ABG, 1e-4, 2.5, 60, 0.89749006},          {SCATTER_ABG, 0.3, 0.5, 60, 0.87794318},
 };
 
-// Of light with unit incident amplitude at the angle of this cosine, by complex amplitudes.
+// The reflectances of s- and p-polarised light at the angle of incidence with this cosine, by complex amplitudes.
 struct Polarised {
     double s, p;
     double mean() const { return 0.5 * (s + p); }
@@ -182,7 +182,7 @@ TEST(Abg, IsTheFormulaOfDirectionCosinesAndAHarveyShackLobeWhereGIsTwo) {
     }
 }
 
-// What lies beyond the horizon is absorbed, and nothing else: by the sampler, at all incidences.
+// The sampler absorbs the light that would leave below the horizon, and nothing else, at all incidences.
 TEST(ScatterOfCosines, KeepsTheShareOfTheLobeAboveTheHorizon) {
     constexpr uint draws = 40000;
     for (const auto& [model, first, second, degrees, share] : lobes_kept) {
@@ -208,8 +208,8 @@ TEST(ScatterOfCosines, HalfOfTheLightIsWithinTheMedianDistance) {
         uint model;
         double first, second, median;
     };
-    // Of Harvey and Shack (1 + (d/l)^2)^p = 1 + u ((1 + 1/l^2)^p - 1); of ABg with g = 2 log(1 + d^2/B) = u log(1 +
-    // 1/B).
+    // The median of Harvey and Shack's lobe follows from (1 + (d/l)^2)^p = 1 + u ((1 + 1/l^2)^p - 1) with u = 1/2, and
+    // that of ABg with g = 2 from log(1 + d^2/B) = u log(1 + 1/B).
     const auto harvey = [](double l, double slope) {
         const double p = 1 + slope / 2;
         return l * std::sqrt(std::pow(1 + 0.5 * (std::pow(1 + 1 / (l * l), p) - 1), 1 / p) - 1);

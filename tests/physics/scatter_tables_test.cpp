@@ -1,4 +1,4 @@
-// What the host works out for the scatter models, against closed forms and integrals.
+// The tables that the host works out for the scatter models agree with closed forms and integrals.
 #include "specimen/scatter_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,8 @@ TEST(ScatterTables, TheNormIsThatOfTheLegendreSeries) {
     }
 }
 
-// What density and kernels take, against the integral, in double and in float and between the points of the fit.
+// The norm that density and kernels take from the table is the integral's, in double and in float, between the points
+// of the fit too.
 TEST(ScatterTables, TheTableGivesTheNorm) {
     std::vector<double> gs = {-0.899, -0.41, -0.39, -1e-9, 1e-9, 0.39, 0.41, 0.995, 0.998, 0.999};
     for (int k = 0; k < 95; ++k) {

@@ -150,8 +150,9 @@ TEST(Source, AnAimedDiscIsTheConeCutOutOfTheWhole) {
     EXPECT_GT(chi_square_p(whole, uniform_whole), false_positive_rate);
 }
 
-// The same where the middle moves with the place: about it the part cut out of the whole is as even, from every part of
-// the source. Bins of equal light: by the place, and by the distance from the middle and the side of it.
+// An aim whose middle moves with the place is a part cut out of the whole too: about the middle it is as even, from
+// every part of the source. Bins are of equal light: by the place, and by the distance from the middle and the side of
+// it.
 TEST(Source, AnAimThatMovesWithThePlaceIsCutOutOfTheWhole) {
     constexpr double sine = 0.3, shift = -0.6;
     constexpr int places = 5, distances = 6, sides = 8, bins = places * distances * sides;
@@ -340,7 +341,7 @@ TEST(RingLight, LightsItsAimAsItsProjectedSolidAngleSays) {
     }
 }
 
-// Of two halves the one on lights from its own side, across the axis to the other.
+// The half of a ring that is switched on lights from its own side, across the axis to the other.
 TEST(RingLight, HalfOfItLightsFromItsSide) {
     for (const uint half : {0u, 1u}) {
         RingLight ring = broad_ring();

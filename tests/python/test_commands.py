@@ -107,7 +107,7 @@ class RunTest(unittest.TestCase):
         self.assertEqual(ratio.shape, (2,))
         self.assertTrue(numpy.isnan(sweep.column("share collected")).all())  # traced backward: there is none
         self.assertEqual(sweep.select(g=0.8), [sweep.records[1]])
-        # The same as in the table for people, to its digits.
+        # The values are those of the table for people, to its digits.
         lines = (sweep.folder / "sweep.csv").read_text(encoding="utf-8").splitlines()
         self.assertEqual(lines[0].split(",")[:3], ["g", "from", "signal to noise"])
         for line, value in zip(lines[1:], ratio):

@@ -184,7 +184,7 @@ class StackTest(unittest.TestCase):
         largest = numpy.clip(curves.argmax(axis=0), 1, images - 2)
         rows, columns = numpy.indices(largest.shape)
         offset, curvature = maximum(*(numpy.log(curves[largest + d, rows, columns]) for d in (-1, 0, 1)))
-        # The same evaluation without the flat: of the images as they are.
+        # The truth is the program's own evaluation of the images as they are, without the flat.
         plain = vkfv.evaluate(self.stack.folder, out=shared.folder() / "plain", topography={"place_by_texture": False})
         inside = plain.measured
         self.assertGreater(inside.mean(), 0.8)

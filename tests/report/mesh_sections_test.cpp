@@ -1,4 +1,4 @@
-// What the plane of drawing cuts of a mesh.
+// The plane of drawing cuts a mesh in lines that closed forms know.
 #include "report/mesh_sections.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a stage does to positions, against closed forms, and what tracers make of it.
+// The errors of a stage move positions as closed forms say, and tracers take the moved positions.
 #include "scan/staged_tracer.hpp"
 
 #include "core/mathematics/units.hpp"

@@ -1,4 +1,5 @@
-// What files of several images state of them, in the words of the programs that write them.
+// Files of several images state heights and exposures in the words of the programs that write them; the readers find
+// them.
 #include "scan/stated_series.hpp"
 
 #include "core/messages/error.hpp"

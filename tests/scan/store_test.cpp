@@ -137,7 +137,7 @@ TEST(ImageStore, AllImagesInOneFileAreTheSingleOnes) {
         }
     }
     EXPECT_LE(bytes.size(), stack_file_bytes(4, rows * columns, PixelType::float32));
-    // It has a checksum, and a damaged image does not enter it.
+    // The file of all images has a checksum, and a damaged image does not enter it.
     EXPECT_THAT(bytes_of(folder.path() / "checksums.sha256"), HasSubstr(std::string(stack_file_name)));
     write_bytes(folder.path() / "images/z_0002.tif", "no image");
     EXPECT_THROW(write_stack_file(store), InputError);
@@ -439,7 +439,7 @@ TEST(ImageStore, OneProgramAtATime) {
     EXPECT_EQ(opening_message(folder.path()), "");
 }
 
-// Of images that a device has at a time; those that are stored are not begun again.
+// A tracer that counts the images that a device has at a time; images that are stored are not begun again.
 class AheadTracer final : public FakeTracer {
   public:
     std::future<trace::Image>

@@ -14,7 +14,7 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# These start what their arguments name.
+# Programs that start the program that their arguments name.
 WRAPPERS = {"command", "env", "exec", "nice", "sudo", "time", "timeout", "xargs", "xvfb-run"}
 # Functions of our scripts that do so, with how many arguments stand before the program.
 FUNCTIONS = {"step": 1, "inside": 0, "inside_root": 1}
@@ -187,7 +187,7 @@ def of_cmake(text, file):
         words = found[1].split()
         names = [word for word in words[1:] if re.fullmatch(r"[a-z][\w.+-]*", word)]
         line = text.count("\n", 0, text.find(found[0])) + 1
-        # One of several names suffices: the first is what the table is to have.
+        # Any of several names suffices: the first is the one that the table should have.
         starts += [Start(name, file, line, asked="REQUIRED" not in words) for name in names[:1]]
     for found in re.finditer(r"(?<!NAME )\bCOMMAND\s+([a-z][\w.+-]*)", code):
         starts.append(Start(found[1], file, text.count("\n", 0, text.find(found[0])) + 1))

@@ -125,10 +125,10 @@ TEST(Roughness, IsAsHighAsItIsAskedFor) {
     roughness.ra = 0.00005;
     const RoughnessHeights told = roughness_heights(made(roughness));
     EXPECT_NEAR(told.ra, 0.00005, 1e-10);
-    // Of normal heights sqrt(2 / pi) of Sq; rows of 100 um lose little of their own means.
+    // The mean of normal heights is sqrt(2 / pi) of Sq; rows of 100 um lose little of their own means.
     EXPECT_NEAR(told.sa / told.sq, std::sqrt(2 / pi), 0.02);
     EXPECT_NEAR(told.ra / told.sa, 1, 0.1);
-    // The same surface, of another scale.
+    // The surface by Ra is the surface by Sq at another scale.
     const Grid<double> by_ra = made(roughness);
     const double factor = by_sq.values[0] / by_ra.values[0];
     EXPECT_NEAR(by_sq.values[12345], factor * by_ra.values[12345], 1e-9);

@@ -60,7 +60,7 @@ struct Text {
                R"(, "meshes": [{"primitives": [)" + primitive + "]" + mesh + R"(}], "accessors": )" + accessors +
                R"(, "bufferViews": )" + views + R"(, "buffers": )" + buffer + "}";
     }
-    // The same as a binary container.
+    // The text and its bytes as a binary container (GLB).
     std::string binary() const {
         Text inner = *this;
         inner.buffers = R"([{"byteLength": )" + std::to_string(bytes.size()) + "}]";
@@ -99,7 +99,7 @@ std::string message_of(const std::string& bytes) {
     return "no error";
 }
 
-// What the log says meanwhile.
+// The log that some work leaves.
 std::string log_of(const std::function<void()>& work) {
     std::ostringstream stream;
     const auto before = spdlog::default_logger();
@@ -278,7 +278,7 @@ TEST_F(Gltf, ExtensionsOfAppearanceAndLaterMinorVersionsAreRead) {
 TEST_F(Gltf, InstancesStandWhereTheyArePlaced) {
     Text text;
     text.add(floats({{10, 0, 0}, {0, 20, 0}}), R"("componentType": 5126, "type": "VEC3", "count": 2)");
-    // None, and 90 degrees about z, as normalised shorts.
+    // The rotations are none, and 90 degrees about z, as normalised shorts.
     std::string rotations;
     for (const double part : {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}) {
         rotations += raw(static_cast<std::int16_t>(std::lround(part * 32767)));
@@ -370,7 +370,7 @@ TEST_F(Gltf, WhatLeavesTheTrianglesAloneIsWarnedOf) {
     EXPECT_THAT(log_of([&] { (void)parse_gltf(Text{}.text(), "part.gltf"); }), IsEmpty());
 }
 
-// One mesh placed so often that it does not fit into memory, from a file of some kilobytes.
+// A mesh is placed so often that it does not fit into memory, from a file of some kilobytes.
 TEST_F(Gltf, CopiesAreCountedBeforeTheyAreMade) {
     Text text;
     constexpr int points = 30000;
@@ -460,7 +460,7 @@ TEST_F(Gltf, BuffersAreRegularFiles) {
         }
     }
     close(listener);
-    // What no triangle needs is not opened.
+    // Buffers and images that no triangle needs are not opened.
     const auto file = write("unused.gltf", with([](Text& t) {
                                                t.head = R"(, "images": [{"uri": "pipe"}])";
                                                t.buffers = R"([{"byteLength": 36, "uri": "a.bin"}, )"

@@ -45,7 +45,8 @@ TEST(Material, BecomesTheRecordLobeByLobe) {
     EXPECT_EQ(record.lobe_0.model, physics::f64::SCATTER_MIRROR);
     EXPECT_EQ(record.lobe_1.model, physics::f64::SCATTER_HENYEY_GREENSTEIN);
     EXPECT_EQ(record.lobe_1.parameter_0, 0.7);
-    // Its table is filled: the norm at normal incidence by the Legendre series of scatter_test.cpp, the table to 1e-6.
+    // The lobe's table is filled: the norm at normal incidence is that of the Legendre series of scatter_test.cpp, the
+    // table is good to 1e-6.
     auto tabulated = record.lobe_1;
     EXPECT_NEAR(physics::f64::henyey_greenstein_norm(0.7, tabulated.table, 1.0), 0.735169, 1.5e-6);
     EXPECT_EQ(record.lobe_2.model, physics::f64::SCATTER_LAMBERTIAN);

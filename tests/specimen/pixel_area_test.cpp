@@ -60,7 +60,8 @@ PixelArea scattered(int column, int row) {
     return area;
 }
 
-// The same pixels one by one: no search for those that a triangle covers.
+// The heights of all pixels together are those of single pixels, for which no search finds the pixels that a triangle
+// covers.
 void expect_same_alone(const Specimen& specimen, const AreaOf& area_of) {
     const auto together = truth(specimen, grid, area_of);
     EXPECT_EQ(together.x0, grid.x0);

@@ -100,7 +100,7 @@ TEST(ReflectanceNoise, CoversTheFootprintAndIsClipped) {
     EXPECT_DOUBLE_EQ(map.record.centre_y, -0.05);
     EXPECT_EQ(*std::ranges::min_element(map.values.values), 0);
     EXPECT_EQ(*std::ranges::max_element(map.values.values), 1);
-    // Of a normal density clipped at one deviation on both sides the share erfc(1 / sqrt 2) lies on the bounds.
+    // The share erfc(1 / sqrt 2) of a normal density that is clipped at one deviation on both sides lies on the bounds.
     const auto on_bounds =
         std::ranges::count_if(map.values.values, [](float value) { return value <= 0 || value >= 1; });
     EXPECT_NEAR(static_cast<double>(on_bounds) / (106 * 251), std::erfc(std::sqrt(0.5)), 0.03);

@@ -51,7 +51,7 @@ TEST(Plateaus, LettersHaveTheirHeightsFromLeftToRight) {
     ASSERT_EQ(columns.size(), 4u);
     EXPECT_LT(columns.at(0.002f).second, columns.at(0.004f).first);
     EXPECT_LT(columns.at(0.004f).second, columns.at(0.006f).first);
-    // As wide as asked for, in the middle: widths are whole points, four letters and three gaps.
+    // The text is as wide as asked for, and in the middle: widths are whole points, four letters and three gaps.
     EXPECT_NEAR(columns.at(0.006f).second - columns.at(0.002f).first, 320, 12);
     EXPECT_NEAR(columns.at(0.006f).second + columns.at(0.002f).first, 400, 12);
 }

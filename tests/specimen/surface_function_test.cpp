@@ -339,7 +339,7 @@ TEST(March, FindsTheFirstCrossingOfARoughSurface) {
     EXPECT_LE(floats_beside, 1); // at the footprint's border
 }
 
-// What leaves a convex surface never meets it again, whatever the direction: neither stuck nor leaked.
+// Light that leaves a convex surface never meets it again, whatever the direction: rays are neither stuck nor leaked.
 template <class Real, class Record, class March>
 int meetings_after_leaving(const Record& r, March march, double offset) {
     RandomRays random(6);

@@ -13,7 +13,7 @@ namespace vkfv::test {
 struct ExrBytes {
     int columns = 3, rows = 2;
     std::vector<float> values = {1, 2, 3, 4, 5, 6}; // first row on top
-    // What the header says; the pixels stay those of columns x rows.
+    // The header's statements; the pixels stay those of columns x rows.
     std::vector<std::int32_t> window = {0, 0, 2, 1}; // least and greatest x and y
     std::uint32_t tile = 0;                          // columns and rows of a tile; 0: scan lines
     int parts = 1;                                   // further ones hold zeros

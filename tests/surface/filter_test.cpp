@@ -133,7 +133,8 @@ TEST(GaussianFilter, NeedsAPositiveNestingIndex) {
 }
 
 TEST(GaussianFilter, ByTransformsIsThatOfWeightedSums) {
-    // Of heights in three magnitudes, with isolated points, odd sizes, and windows shorter and longer than the map.
+    // Heights of three magnitudes, isolated points, odd sizes, and windows shorter and longer than the map give the
+    // same by both.
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
     for (const auto& [columns, rows] : {std::pair(157, 83), std::pair(1, 90), std::pair(64, 1)}) {

@@ -43,7 +43,7 @@ TEST(Form, OfASphereLeavesTheWavesOnIt) {
         return -(u * u + v * v) / (radius + std::sqrt(radius * radius - u * u - v * v)) +
                amplitude * std::cos(2 * pi * u / 0.02);
     });
-    // Of k = 10 periods a parabola takes the share 90 / (pi k)^4 = 9.2e-5 of the mean square, a sphere less; the slopes
+    // A parabola takes the share 90 / (pi k)^4 = 9.2e-5 of the mean square of k = 10 periods, a sphere less; the slopes
     // of up to 0.14 weigh the points by up to 2 % less, which changes that share as much.
     const double waves = amplitude / std::sqrt(2);
     EXPECT_NEAR(sq_after("sphere", map), waves, 1e-4 * waves);

@@ -47,7 +47,7 @@ TEST(Profile, FilterPassesHalfAtItsCutOff) {
     Profile wave{.height = {}, .spacing = spacing};
     for (int k = -400; k <= 400; ++k)
         wave.height.push_back(std::cos(2 * pi * k * spacing / wavelength));
-    // As of the areal filter (filter_test.cpp): the weights beyond the cut-off are missing, 1e-5.
+    // The tolerance is that of the areal filter (filter_test.cpp): the weights beyond the cut-off are missing, 1e-5.
     EXPECT_NEAR(gaussian_low_pass(wave, wavelength).height[400], 0.5, 1e-5);
     EXPECT_NEAR(remove_long_waves(wave, wavelength).height[400], 0.5, 1e-5);
     EXPECT_NEAR(gaussian_low_pass(wave, wavelength / 2).height[400], std::pow(0.5, 0.25), 1e-5);

@@ -53,7 +53,7 @@ TEST(Resample, AveragesAFinerMapOverTheCell) {
     const double u = pi * width / wavelength;
     for (int column = 0; column < 6; ++column)
         EXPECT_NEAR(coarse.height(column, 2), std::sin(u) / u * std::cos(2 * pi * coarse.x(column) / wavelength), 3e-3);
-    // What the coarse grid cannot resolve does not alias: point by point it would be seen in full.
+    // Waves that the coarse grid cannot resolve do not alias: sampled point by point, they would be seen in full.
     const auto fine = sampled(60, 50, pitch, [=](double x, double) { return std::cos(2 * pi * x / width); });
     for (const double z : resampled(fine, grid(6, 4, -0.2, 0.27, width)).height.values)
         EXPECT_NEAR(z, 0, 1e-12);

@@ -71,7 +71,7 @@ TEST(RoughnessProfile, FindsTheClassByRa) {
     EXPECT_EQ(name_of(0.05e-3, 2101), "Sc2");
     EXPECT_EQ(name_of(1e-3, 2101), "Sc3");
     EXPECT_EQ(name_of(3e-3, 6301), "Sc4");
-    // Of 4.2 mm, Ra of 3 um asks for 12.5.
+    // A profile of 4.2 mm is too short for Ra of 3 um, which asks for 12.5 mm.
     const RoughnessProfile shorter = measured(wave(3e-3 * pi / 2, wavelength, 2101), {.kind = Kind::by_ra});
     EXPECT_EQ(shorter.setting_class->name, "Sc4");
     EXPECT_TRUE(std::isnan(shorter.parameters.ra));

@@ -37,7 +37,7 @@ TEST(SpatialParameters, OfAnEggBoxFallAsItsAutocorrelation) {
 }
 
 TEST(SpatialParameters, CountLengthsNotPoints) {
-    // The same heights twice as far apart along y: the lags along y double.
+    // A map of the same heights twice as far apart along y has lags along y twice as long.
     auto map = egg_box(0.03, 0.03, false);
     map.pitch_y *= 2;
     const double k = 2 * pi / 0.03;

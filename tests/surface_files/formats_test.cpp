@@ -314,7 +314,7 @@ TEST(SurfaceFormats, TextOfZygo) {
     for (std::size_t length = 20; length + 10 < test::zygo_phases().size(); length += 5) {
         EXPECT_THROW((void)parse_zygo_text(test::zygo_phases().substr(0, length), "a.asc", {}), InputError) << length;
     }
-    // What XYZ files do not say: the unit, which Mx lets its user choose, and sometimes the pitch.
+    // XYZ files do not state the unit, which Mx lets its user choose, and sometimes not the pitch.
     EXPECT_EQ(parse_zygo_text(test::zygo_points(), "a.xyz", {}).warnings.size(), 1U);
     const SurfaceFile waves = parse_zygo_text(test::zygo_points(), "a.xyz", {.pitch = {}, .unit = 0.6328e-3});
     EXPECT_TRUE(waves.warnings.empty());
@@ -356,7 +356,7 @@ TEST(SurfaceFormats, OpdOfEveryNameOfItsBlock) {
             EXPECT_TRUE(found[k] == expected[k] || (std::isnan(found[k]) && std::isnan(expected[k]))) << name << k;
     }
     EXPECT_THROW((void)parse_opd(named("Other"), "a.opd"), InputError);
-    // It also writes dates without zeros at their beginning.
+    // Vision also writes dates without zeros at their beginning.
     std::string dated = named("OPD");
     const auto replace = [&dated](const std::string& from, std::string to) {
         to.resize(from.size(), '\0');

@@ -1,4 +1,5 @@
-// What files state of themselves beside the heights: units, pitches, and what marks points that were not measured.
+// Files state units, pitches and the marks of points that were not measured beside the heights; the readers believe
+// them.
 #include "core/messages/error.hpp"
 #include "surface_files/height_image.hpp"
 #include "surface_files/height_table.hpp"
@@ -89,7 +90,7 @@ TEST(TableStatements, UnitsInTheNamesOfColumnsAreUsed) {
         EXPECT_THAT(file.map.pitch_x, near(0.002)) << names;
         EXPECT_THAT(file.map.pitch_y, near(0.002)) << names;
         EXPECT_TRUE(file.warnings.empty()) << names;
-        // The same unit by an option says nothing; another is told of, and not used.
+        // An option of the same unit says nothing new; another unit is told of, and not used.
         EXPECT_TRUE(table(std::string(names) + "\n" + points, {.pitch = {}, .unit = um}).warnings.empty()) << names;
         const SurfaceFile contradicted = table(std::string(names) + "\n" + points, {.pitch = {}, .unit = 1.0});
         ASSERT_EQ(contradicted.warnings.size(), 1u) << names;
@@ -301,7 +302,7 @@ TEST(ImplausibleHeights, AreWarnedOf) {
         ASSERT_EQ(found.size(), 1u) << odd;
         EXPECT_THAT(found[0], testing::AllOf(HasSubstr("1 heights"), HasSubstr("a.csv")));
     }
-    // Of a plane without any height a metre is asked.
+    // A plane with a single height may be as high as a metre before the reader warns.
     std::ofstream(folder / "a.csv") << "0,0,0,0\n0,0,0,0\n0,0,1e5,0\n0,0,0,0\n";
     EXPECT_TRUE(read_surface(folder / "a.csv", given).warnings.empty());
     std::ofstream(folder / "a.csv") << "0,0,0,0\n0,0,0,0\n0,0,1.1e6,0\n0,0,0,0\n";

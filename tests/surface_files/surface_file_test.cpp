@@ -291,7 +291,7 @@ void write_zip(const std::filesystem::path& path, const Entries& entries) {
     ASSERT_EQ(zip_close(archive), 0);
 }
 
-// As other programs write it: 3 x 2 points, the first row on top.
+// An X3P file as other programs write it: 3 x 2 points, the first row on top.
 struct ForeignX3p {
     std::string type = "F", revision = "ISO5436 \xE2\x80\x93 2000", cz, link = "bindata/data.bin", valid_link;
     std::string size_x = "3", size_y = "2", increment = "1e-6", points, valid, points_md5;
@@ -532,7 +532,7 @@ TEST_F(SurfaceFiles, SurOf16BitsInOtherUnitsIsRead) {
     };
     check(read_surface(write("a.sur", bytes + zones + points)));
 
-    // The same packed by zlib, in two streams.
+    // The pixels may be packed by zlib, here in two streams.
     const auto stream = [](const std::string& part) {
         std::string packed(100, '\0');
         uLongf length = packed.size();

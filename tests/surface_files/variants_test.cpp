@@ -120,7 +120,7 @@ TEST(SurfaceVariants, X3pOfAFolderAndWithTheIdentity) {
             "otation");
 }
 
-// What the root element is called does not matter.
+// The name of the root element does not matter.
 TEST(SurfaceVariants, X3pOfAnyRoot) {
     const std::string xml = main_xml(data_list({"1e-6", "2e-6", "3e-6", "4e-6"}));
     const auto expected = parse_x3p(zipped({{"main.xml", xml}}), "a.x3p").map.height.values;

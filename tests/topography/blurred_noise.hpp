@@ -93,8 +93,8 @@ inline BlurredNoise blurred_by_pupil(int side, double aperture, double pitch) {
             [=](double fx, double fy) { return std::pow(in_focus(std::hypot(fx, fy) / cutoff), 2); }};
 }
 
-// The same where every part of the pupil blurs its own light, with the weight that the overlap of the displaced
-// pupils leaves it: 0 or 1.
+// Noise of light of which every part of the pupil blurs its own, with the weight that the overlap of the displaced
+// pupils leaves it: 0 or 1. Wavelength and units are those of blurred_by_pupil().
 inline BlurredNoise blurred_by_parts(int side, double aperture, double pitch) {
     const double cutoff = 2 * aperture / 0.55e-3;
     return {side, pitch, cutoff, [=](double fx, double fy) { return in_focus(std::hypot(fx, fy) / cutoff); }};

@@ -84,7 +84,7 @@ TEST(Comparison, InTheTruthsPlaneKeepsAStep) {
     EXPECT_NEAR(kept.sq_true, 2 * um, 1e-9 * um);
     EXPECT_LT(kept.rms, 1e-9 * um);
     EXPECT_NEAR(compare(of_slope(0.03), of_slope(0)).sq_true, um, 1e-3 * um);
-    // What is no plane stays in the deviation.
+    // The two maps differ by a plane alone, which the truth's form takes off: no deviation is left.
     EXPECT_NEAR(deviation_map(of_slope(0.03), of_slope(0), as_true).height(3, 3), 0, 1e-9 * um);
 }
 

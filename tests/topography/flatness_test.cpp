@@ -78,7 +78,7 @@ TEST(Flatness, CorrectionTellsWhatItTookOff) {
     EXPECT_THROW(correct_flatness(measured, surface::HeightMap{}), std::invalid_argument);
 }
 
-// Of a tilted field its deviation from the mean over the measured points alone, by squares.
+// A tilted field adds its deviation from the mean over the measured points alone to the uncertainty, by squares.
 TEST(Flatness, CurvatureThatStaysAddsToTheUncertainty) {
     auto heights = flat_of([](int, int) { return 7.0; });
     for (int row = 0; row < points; ++row) {

@@ -192,7 +192,7 @@ TEST(LateralShift, OfUnrelatedSurfacesIsNotFound) {
             found += !std::isnan(lateral_shift(one.measured, other.truth).x);
         }
     EXPECT_EQ(found, 0);
-    // Of planes rounding alone is left.
+    // Levelled planes leave rounding alone, which has no shift.
     Pair planes = moved_pair(60, 3, 0, 0, 0.02, 0, 1);
     for (int row = 0; row < 60; ++row)
         for (int column = 0; column < 60; ++column) {

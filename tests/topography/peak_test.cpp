@@ -95,7 +95,8 @@ TEST(Peak, TheCentreOfGravityIsThatOfWhatStandsAboveTheSmallestValue) {
     // A triangle of height 4 and half width 4, shifted by a half, above a pedestal of 7: values 7 +
     // (0.5 1.5 2.5 3.5 3.5 2.5 1.5), of which the smallest falls away: (1*-2 + 2*-1 + 3*0 + 3*1 + 2*2 + 1*3) / 12.
     EXPECT_NEAR(located(PEAK_CENTRE_OF_GRAVITY, Curve{{7.5, 8.5, 9.5, 10.5, 10.5, 9.5, 8.5}}, 3), 6.0 / 12, 1e-15);
-    // Of a Gaussian whose feet are in the range: its centre, but for the tail cut off, exp(-0.5 (5.7/1.2)^2) = 1e-5.
+    // The centre of gravity of a Gaussian whose feet are in the range is its centre, but for the tail cut off, exp(-0.5
+    // (5.7/1.2)^2) = 1e-5.
     EXPECT_NEAR(located(PEAK_CENTRE_OF_GRAVITY, sampled(gaussian(0.3, 1.2), 6), 6), 0.3, 1e-3);
 }
 

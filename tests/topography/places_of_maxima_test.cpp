@@ -58,7 +58,8 @@ struct Stack {
     double smoothing, width; // in steps
 };
 
-// Of a curve as wide as the stack's, and of one a quarter wider: its place, and how far off a straight line puts it.
+// The places are found of curves as wide as the stack's and of curves a quarter wider. The wrong twin is a straight
+// line through the images' places.
 TEST(PlacesOfMaxima, AreThoseOfTheCurvesNearBothEnds) {
     for (const Stack stack :
          {Stack{10, 0.66, 1}, Stack{21, 2, 3}, Stack{31, 3, 4}, Stack{60, 2, 3}, Stack{101, 4, 6}}) {

@@ -68,7 +68,7 @@ trace::Image backward_image(const optics::Instrument& instrument, const specimen
         ->expose(focal_height, image);
 }
 
-// So many rays that forward's noise, whose distribution is known, is the larger one in what is compared.
+// The rays are so many that forward's noise, whose distribution is known, is the larger one in what is compared.
 trace::Image forward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen, int max_bounces,
                            std::uint64_t rays = 1'200'000) {
     return trace::make_device_tracer(instrument, specimen, options(trace::Estimator::forward, rays, max_bounces))
@@ -117,7 +117,7 @@ specimen::Specimen with_material(specimen::Specimen specimen, const specimen::Ma
 
 } // namespace
 
-// One scatter event and up to four, on facets so steep that light meets them again.
+// The images agree for a single scatter event, and for up to four on facets so steep that light meets them again.
 TEST(Backward, EstimatesTheImageThatForwardDoes) {
     const auto instrument = optics::assemble(small_description());
     const auto rough = test::rough_specimen();
@@ -136,9 +136,9 @@ TEST(Backward, AnotherSpecimenDoesNotPass) {
     EXPECT_LT(agreement(forward_image(instrument, steep, 4), backward_image(instrument, steep, 3)), level);
 }
 
-// What the source shows for sure is looked at apart from its rim: the same image. How much less noise that is depends
-// on the specimen; here it is no more, as it would be if the rim's directions were a poor lattice: ten times the
-// variance.
+// The part of the aperture that shows the source for sure is sampled apart from the source's rim, and the image is the
+// same. How much less noise that is depends on the specimen; here it is no more. If the rim's directions were a poor
+// lattice, the variance would be ten times as large.
 TEST(Backward, TellsTheRimOfTheSourceApart) {
     auto description = small_description();
     description.field_stop_radius = 0.3; // so that all of the detector sees the source's middle for sure
@@ -169,10 +169,11 @@ TEST(Backward, KnowsEveryMaterial) {
          {mixture, specimen::Material::henyey_greenstein(1), specimen::Material::henyey_greenstein(-0.4),
           specimen::Material::henyey_greenstein(0.97)}) {
         const auto specimen = with_material(rough, material);
-        // Of a mirror among other lobes backward's own noise would be half of forward's.
+        // With a mirror among other lobes backward's own noise would be half of forward's; twice as many paths make it
+        // less.
         expect_agreement(forward_image(instrument, specimen, 2), backward_image(instrument, specimen, 2, 1 << 20));
     }
-    // One event alone takes fewer numbers, but the lobe is still chosen.
+    // A single event takes fewer random numbers, but the lobe is still chosen.
     const specimen::Material sharp_and_wide{{{"henyey-greenstein", 0.5, {0.3}}, {"henyey-greenstein", 0.4, {0.95}}}};
     const auto specimen = with_material(rough, sharp_and_wide);
     expect_agreement(forward_image(instrument, specimen, 1), backward_image(instrument, specimen, 1));
@@ -229,7 +230,7 @@ TEST(Backward, EveryTraversalGivesTheSameImage) {
         with.traversal = traversal;
         images.push_back(trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 1));
     }
-    // The same paths: what differs are those within rounding of an edge, which is fewer than 1 in 1000.
+    // All traversals trace the same paths: only those within rounding of an edge differ, fewer than 1 in 1000.
     const auto& first = images.front().flux.values;
     const double total = std::accumulate(first.begin(), first.end(), 0.0);
     for (const auto& image : images) {
@@ -318,8 +319,8 @@ TEST(Backward, StatesItsStandardError) {
     EXPECT_NEAR(stated / seen, 1.0, 5 * std::sqrt(2.0 / 256 * (1.0 / 15 + 1)));
 }
 
-// What the gates promise, for each microscope of the library, in double: all light within the inner one is from the
-// source, none outside the outer one.
+// The gates keep their promise for each microscope of the library, in double: all light within the inner one is from
+// the source, none outside the outer one.
 TEST(Backward, GatesHoldForEveryMicroscope) {
     for (const char* objective : objectives) {
         SCOPED_TRACE(objective);
@@ -361,7 +362,7 @@ TEST(Backward, GatesHoldForEveryMicroscope) {
     }
 }
 
-// So that a stack is not continued by a program that draws others.
+// A stack must not be continued by a program that draws other paths.
 TEST(Backward, IdentityKnowsWhatPathsAreDrawnBy) {
     const auto instrument = optics::assemble(small_description());
     auto other = instrument;
@@ -458,7 +459,7 @@ TEST(Backward, KnowsARectangularSource) {
         other.source.rectangle = sides;
         EXPECT_LT(agreement(forward, backward_image(optics::assemble(other), rough, 1)), level) << sides.x;
     }
-    // Of a die that the pupil sees whole, aiming loses nothing.
+    // Aiming loses nothing of a die that the pupil sees whole.
     auto small = description;
     small.source.rectangle = glm::dvec2(0.8, 0.5);
     auto whole = small;

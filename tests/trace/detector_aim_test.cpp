@@ -26,7 +26,7 @@ trace::TraceOptions once() {
     return result;
 }
 
-// Its points are up to 0.03 mm from the focal planes of these tests, where their light spreads.
+// A specimen with points up to 0.03 mm from the focal planes of these tests, where their light spreads.
 specimen::Specimen high_specimen() {
     return test::rough_specimen(0.65, 0.004, 0.03);
 }

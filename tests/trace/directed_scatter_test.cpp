@@ -226,7 +226,8 @@ TEST(DirectedScatter, BitsDoNotDependOnTheBatch) {
     EXPECT_NE(expose(instrument, specimen, with).flux.values, reference.flux.values); // wrong twin
 }
 
-// The same paths by every traversal and in double: images differ by ties within rounding alone, as in the analog form.
+// Every traversal, and the host in double, trace the same paths: images differ by ties within rounding alone, as in the
+// analog form.
 TEST(DirectedScatter, TraversalsAndHostGiveTheSameImage) {
     const auto instrument = coarse_microscope();
     const auto specimen = test::steep_specimen(0.65);

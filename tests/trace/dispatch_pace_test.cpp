@@ -27,7 +27,7 @@ TEST(DispatchPace, NoSubmissionIsLongOnAnyDevice) {
         }
         EXPECT_TRUE(pace.settled());
         EXPECT_LE(waited_for, 6) << rate;
-        // And none so short that it keeps the device waiting.
+        // No submission is so short that it keeps the device waiting.
         EXPECT_TRUE(pace.paths() == most || seconds_of(pace.paths(), rate) > 0.05) << rate;
     }
 }
@@ -51,7 +51,7 @@ TEST(DispatchPace, TheRestOfAnExposureTellsNoRate) {
     const auto before = pace.paths();
     pace.took(10, 100e-6);
     EXPECT_EQ(pace.paths(), before);
-    // But that it takes long does.
+    // A rest that takes long does tell the rate.
     pace.took(10, 1);
     EXPECT_LT(pace.paths(), before);
 }

@@ -37,7 +37,7 @@ TEST(Displacement, MovesTheImage) {
     description.turned = true;
     const auto instrument = optics::assemble(description);
     const double pitch = instrument.first_order.pixel_pitch;
-    // Its grating lights the pixels unlike each other.
+    // The specimen's grating lights the pixels unlike each other.
     auto specimen = test::rough_specimen();
     specimen.reflectance = specimen::make_reflectance_map(
         {.kind = specimen::Reflectance::Kind::grating, .angle = 0.6, .period = 0.013}, {-0.15, -0.15, 0.15, 0.15}, {});

@@ -165,7 +165,7 @@ TEST(EmissionOrder, NumbersAreUniformOverAllPaths) {
     constexpr int bins = 64;
     const EmissionOrder order(test::microscope(), paths, seed);
     const EmissionCells cells(order, 5);
-    // Of each of the six numbers.
+    // The excess of chi-square of each of the six numbers.
     const auto excesses = [&](std::uint32_t first_paths) {
         std::array<std::vector<double>, 6> counts;
         counts.fill(std::vector<double>(bins));

@@ -53,7 +53,7 @@ std::size_t cell_of(const GateDisc& disc, real3 direction) {
     return static_cast<std::size_t>(ring * sectors + sector);
 }
 
-// What passes into each cell, and in the last place what does not pass.
+// The draws that pass into each cell of the gate, and in the last place those that do not pass.
 std::vector<double> gated(const Case& c, const GateDisc& disc, std::uint32_t draws) {
     std::vector<double> seen(rings * sectors + 1);
     for (std::uint32_t k = 0; k < draws; ++k) {

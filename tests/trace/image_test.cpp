@@ -167,8 +167,8 @@ TEST(Image, BitsDoNotDependOnTheBatchOrTheRun) {
     EXPECT_NE(expose(instrument, specimen, other).flux.values, reference.flux.values); // wrong twin
 }
 
-// The same paths meet the same facets: the two traversals differ in a few detections of ties within rounding. The
-// images also agree with the host's, and a specimen of another g does not.
+// The two traversals trace the same paths to the same facets, and differ in a few detections of ties within rounding.
+// The images also agree with the host's; the image of a specimen of another g does not.
 TEST(Image, TraversalsAndHostGiveTheSameImage) {
     const auto instrument = test::microscope();
     const auto specimen = test::rough_specimen();
@@ -249,8 +249,8 @@ TEST(Image, AnIlluminationInPolynomialsGivesTheImageOfOneThatIsTraced) {
     EXPECT_LT(same_expectation_p(by_polynomials, expose(instrument, test::rough_specimen(0.3), fresh)), 1e-4);
 }
 
-// One scatter event on a plane: every ray that comes to the specimen is absorbed or not by its reflectance, and the
-// ledger closes with its power in a row of its own. As many bounces change nothing, as a plane is met once.
+// A plane scatters light once: every ray that comes to the specimen is absorbed or not by its reflectance, and the
+// ledger closes with its power in a row of its own. More bounces change nothing, as a plane is met once.
 TEST(Image, WhatTheSpecimenDoesNotReflectIsAbsorbed) {
     const auto instrument = test::microscope();
     specimen::Specimen plane = test::plane_specimen(0.0);

@@ -1,4 +1,4 @@
-// What the ledger's entries say of themselves beside their words.
+// The ledger's entries say in numbers, beside their words, where light ended.
 #include "trace/interface/ledger.hpp"
 #include "trace/microscope.hpp"
 

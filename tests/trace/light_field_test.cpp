@@ -42,7 +42,7 @@ optics::Instrument with(const std::optional<optics::LightField>& light) {
     return optics::assemble(description);
 }
 
-// The same by an illuminator of real lenses.
+// The instrument with an illuminator of real lenses in place of the ideal one.
 optics::Instrument by_real_lenses(const std::optional<optics::LightField>& light) {
     auto description = small_description();
     const auto real = test::microscope_description();
@@ -115,7 +115,7 @@ specimen::Specimen flat(const std::string& scatter) {
     return {plane, specimen::Material{{{scatter, 1, {}}}}};
 }
 
-// Of the image over that without a pattern: the coefficient of so many periods in the field.
+// The Fourier coefficient of so many periods in the field, of the image over that without a pattern.
 std::complex<double> coefficient(const trace::Image& image, const trace::Image& bare, int along_x, int along_y) {
     const int pixels = image.flux.columns;
     std::complex<double> sum = 0;
@@ -259,7 +259,8 @@ TEST(LightField, IsMetOnGlassByAllWaysOfTracing) {
     EXPECT_LT(agreement(nonsequential, expose(lit_by(even()), specimen, backward)), level);
 }
 
-// What the pattern takes is an entry at the stop: half of what comes through the hole around it.
+// The light that the pattern takes is an entry of the ledger at the stop: half of what comes through the hole around
+// it.
 TEST(LightField, TheLedgerCountsWhatThePatternTakes) {
     optics::LightField light = even();
     light.record.pattern.lowest = 0.2;

@@ -86,7 +86,7 @@ PlacedMesh placed(Facets facets, const optics::Pose& pose, MeshElement::Kind kin
     return mesh;
 }
 
-// One ray up the axis.
+// A single ray up the axis.
 physics::f64::Instrument ray() {
     auto instrument = pencil(1000, 1);
     instrument.source_radius = 0;
@@ -126,7 +126,8 @@ TEST(MeshElement, APrismTurnsLightByItsDeviation) {
     constexpr double index = 1.5168;
     static constexpr double apex = pi / 3;
     const auto deviation = [](double n) { return 2 * std::asin(n * std::sin(apex / 2)) - apex; };
-    // Its apex to -y; the ray meets the middle of its first face from below, at the angle of incidence (A + D) / 2.
+    // The prism's apex points to -y; the ray meets the middle of its first face from below, at the angle of incidence
+    // (A + D) / 2.
     const double height = 10 * std::sqrt(3.0);
     const Facets prism = drawn_out({{-height / 2, 0}, {height / 2, -10}, {height / 2, 10}}, 10);
     // Without a turn the first face's outward normal is at A / 2 from -z towards -y.
@@ -184,7 +185,8 @@ TEST(MeshElement, ALensMakesSpotsAsWideAsItsFacets) {
     EXPECT_LT(finest, width);
 }
 
-// As Nonsequential.FivePlatesPassWhatStokesSays, of meshes.
+// Stokes' formula for a pile of plates, as in Nonsequential.FivePlatesPassWhatStokesSays, holds for plates of meshes
+// too.
 TEST(MeshElement, FivePlatesPassWhatStokesSays) {
     const auto passed = [](double index) {
         const double reflectance = (index - 1) * (index - 1) / ((index + 1) * (index + 1));

@@ -102,7 +102,7 @@ TEST(Traversal, AMeshIsMetLikeTheSphereItApproximates) {
     std::normal_distribution<float> normal;
     std::uniform_real_distribution<float> uniform;
     std::vector<ProbeRay> rays = rays_from_top(ball, 50'000, 0.3, 0.01, 18);
-    // And from all sides: from 0.09 mm off the centre towards a point of a slightly larger ball.
+    // Further rays come from all sides: from 0.09 mm off the centre towards a point of a slightly larger ball.
     for (int k = 0; k < 50'000; ++k) {
         const glm::vec3 from = glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));
         const glm::vec3 to = glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));

@@ -175,8 +175,8 @@ TEST(MixedLight, FindsItsOwnWayToo) {
     EXPECT_GT(apart(found, {expose(optics::assemble(brighter), with)}), largest_z);
 }
 
-// The same ring twice, in two colours, is one ring of two lines: geometry, best focus and dispersion are those of all
-// light together.
+// A ring twice, in two colours, is one ring of two lines: geometry, best focus and dispersion are those of all light
+// together.
 TEST(MixedLight, OfTwoColoursIsOneLightOfTwoLines) {
     auto description = mixed_description();
     optics::SourceDescription blue;
@@ -236,7 +236,7 @@ TEST(MixedLight, RaysAreSharedOutAmongTheSources) {
     EXPECT_EQ(trace::launched_rays(with, description), 2u * 256 * 2048);
 }
 
-// What the images depend on: another light of the second source is another identity, on host and device.
+// Another light of the second source is another identity, on host and device, since images depend on it.
 TEST(MixedLight, IdentityKnowsEverySource) {
     const auto specimen = test::rough_specimen();
     auto description = mixed_description();

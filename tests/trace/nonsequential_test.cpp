@@ -29,7 +29,7 @@ TEST(Nonsequential, WithoutFresnelItGivesTheSequentialImage) {
     EXPECT_GT(by_bvh.detected, 5000u);
     const auto by_ray_query =
         trace::make_device_tracer(instrument, specimen, options(trace::Traversal::ray_query))->expose(0.001, 3);
-    // The same paths: but for those within float rounding of an edge, the same counts.
+    // The two traversals trace the same paths: the counts are the same but for paths within float rounding of an edge.
     EXPECT_NEAR(static_cast<double>(by_ray_query.detected), static_cast<double>(by_bvh.detected), 10);
     // Wrong twin: a splitter of 0.35 / 0.65 passes 9 % less.
     auto other = description;
@@ -132,7 +132,7 @@ TEST(Nonsequential, ThePlatesGhostHasItsPlaceAndStrength) {
     EXPECT_GT(test::share_z(seen[1], paths, through * std::pow(1.0 / 9, 2) * 1.1), 4);
 }
 
-// What lies beyond a lens' edge is its mount, and nothing passes beside the barrels to the detector.
+// Beyond a lens' edge lies its mount, and no light passes beside the barrels to the detector.
 TEST(Nonsequential, NothingPassesBesideTheLenses) {
     auto description = coarse_microscope();
     description.splitter.semi_diameter = 25;

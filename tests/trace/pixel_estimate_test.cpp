@@ -21,7 +21,7 @@ estimate::EstimateRule rule_of(std::uint32_t kind, double count) {
     return {.kind = kind, .scale = 3.1e-9, .unit = 1.0 / 4194304, .unit_of_squares = 1.0 / 16777216, .count = count};
 }
 
-// Of all sizes up to 2^62, and none.
+// Random numbers of all sizes up to 2^62, and a zero.
 std::vector<std::uint64_t> random_numbers(std::size_t count) {
     std::mt19937_64 random(5);
     std::vector<std::uint64_t> numbers(count);
@@ -112,7 +112,7 @@ TEST(PixelEstimate, HasTheSameBitsByTheDeviceAndByTheHost) {
     }
 }
 
-// Whose pixels need more workgroups than a row of them holds.
+// The pixels of a large detector need more workgroups than a row of them holds.
 TEST(PixelEstimate, ReachesEveryPixelOfALargeDetector) {
     const vulkan::Device device;
     constexpr ImageSize large{3000, 2800};

@@ -124,8 +124,8 @@ specimen::Reflectance texture(std::uint32_t seed = 1) {
             .seed = seed};
 }
 
-// Of the image over that of the bare flat: the coefficient of so many periods in the field, and the standard error of
-// its parts.
+// The Fourier coefficient of so many periods in the field, of the image over that of the bare flat, and the standard
+// error of its parts.
 struct Coefficient {
     std::complex<double> value;
     double error = 0;
@@ -260,7 +260,7 @@ TEST(ReflectanceMap, EstimatorsAgreeWhereLightIsScatteredAgain) {
     EXPECT_LT(agreement(expose(instrument, with_map(steep, even), forward, 0.002), reference), level);
 }
 
-// The same paths in every traversal and on the host: what differs are those within rounding of an edge.
+// Every traversal and the host trace the same paths: only those within rounding of an edge differ.
 TEST(ReflectanceMap, HostAndEveryTraversalTraceTheSamePaths) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(test::steep_specimen(0.65), texture());
@@ -282,7 +282,7 @@ TEST(ReflectanceMap, HostAndEveryTraversalTraceTheSamePaths) {
     EXPECT_GT(difference(of_host, other), 0.1); // wrong twin
 }
 
-// What the map takes is absorbed: its mean of what arrives, and the ledger closes.
+// The light that the map takes is absorbed: one minus its mean of what arrives, and the ledger closes.
 TEST(ReflectanceMap, TheLedgerCountsWhatTheMapAbsorbs) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(analytic_flat(), grating());

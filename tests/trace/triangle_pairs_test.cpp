@@ -97,7 +97,7 @@ TEST(TrianglePairs, TakeThePartnerThatMakesTheSmallestBox) {
 }
 
 TEST(TrianglePairs, TakeWhatIsNoSurface) {
-    // The same twice, three at an edge; and what has no extent must not disturb the others.
+    // A triangle may come twice, and three may share an edge; triangles without extent must not disturb the others.
     Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {7, 7, 7}},
               {{0, 1, 2}, {0, 1, 2}, {0, 1, 3}, {0, 1, 4}}};
     EXPECT_EQ(all(pair_triangles(mesh.vertices, mesh.triangles)), mesh.all());

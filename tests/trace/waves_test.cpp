@@ -40,7 +40,7 @@ double variance(std::span<const double> values) {
     return squares / static_cast<double>(values.size() - 1);
 }
 
-// Of the cells' images, all light of a pixel.
+// The sum of the cells' images: all light of each pixel.
 Grid<double> unfiltered(std::span<const std::uint64_t> light, int pixels, int parts, int cells) {
     Grid<double> image(pixels, pixels);
     const int side = pixels * parts;
@@ -263,15 +263,16 @@ TEST(Waves, TakeFewerPartsWhereTheDeviceCannotHoldThem) {
     EXPECT_EQ(parts({}), 3);
     device.max_allocation_bytes = image + 127;
     EXPECT_EQ(parts({}), 2);
-    // What is asked for is not changed behind the asker's back.
+    // Parts that are asked for are not changed behind the asker's back.
     EXPECT_THROW(parts({.parts = 3}), InputError);
     EXPECT_EQ(parts({.parts = 2}), 2);
     device.memory_bytes = 1000;
     EXPECT_THROW(parts({}), InputError);
 }
 
-// Of limits as lavapipe has them. What the host transforms no kernel is given: 800 x 800 pixels needed 164 MB in one
-// binding of 134 MB, and 2448 x 2048 pixels need 2.6 GB of light, which is more than one allocation gives.
+// The device has limits as lavapipe's. Light that the host transforms is given to no kernel: 800 x 800 pixels needed
+// 164 MB in one binding of 134 MB, and 2448 x 2048 pixels need 2.6 GB of light, which is more than one allocation
+// gives.
 TEST(Waves, OfManyPixelsFitWhereTheyAreTiled) {
     auto instrument = ideal_microscope(0.28);
     vulkan::DeviceReport device;
@@ -576,7 +577,7 @@ TEST(Exposures, UnderWayAtATimeAreTheSameBits) {
                 end = exposed.device_end;
             }
             EXPECT_NE(alone[0].flux.values, alone[1].flux.values);
-            // One that nobody asks for makes room again.
+            // An exposure whose result nobody asks for makes room again.
             for (int k = 0; k < 2 * tracer->most_under_way(); ++k) {
                 tracer->begin(0, 0);
             }

@@ -1,4 +1,4 @@
-// What is kept of compiled kernels.
+// Compiled kernels are kept for the next run, and damage to the cache does no harm.
 #include "support/own_cache.hpp"
 #include "vulkan/kernel.hpp"
 

@@ -130,7 +130,7 @@ ssize_t write_or_fail(int file, std::size_t bytes, Write write, WriteAll write_a
 
 } // namespace
 
-// What C's headers declare; those with 64 in their names are the same functions.
+// The functions that stand in for libc's; those with 64 in their names are the same functions.
 extern "C" {
 
 #define OPEN(name)                                                                                                     \

@@ -1,8 +1,8 @@
-// Which call is to fail, and how: read from the environment by both libraries.
+// Both libraries read from the environment which call is to fail, and how:
 //
 //   VKFV_FAULT_CALL     name of the call, "write", "vkQueueSubmit"; without it nothing fails
 //   VKFV_FAULT_NUMBER   which of the calls of that name, from 1
-//   VKFV_FAULT_LASTS    not empty: of those that follow it too
+//   VKFV_FAULT_LASTS    not empty: all later calls of that name fail too
 //   VKFV_FAULT_EFFECT   what becomes of it: see the libraries
 //   VKFV_FAULT_LOG      a file to which each counted call is appended, a line of its name and what it concerns
 #pragma once

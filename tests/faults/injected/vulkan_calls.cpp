@@ -150,7 +150,7 @@ PFN_vkVoidFunction general(Pointer function) {
     return reinterpret_cast<PFN_vkVoidFunction>(function);
 }
 
-// What stands in for a function; null: nothing does.
+// The function that stands in for one of Vulkan's; null where none does.
 PFN_vkVoidFunction stand_in(std::string_view name) {
     if (name == "vkGetInstanceProcAddr") {
         return general(instance_function);

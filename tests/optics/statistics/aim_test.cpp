@@ -58,7 +58,7 @@ void displace(Surface& surface, Random& random) {
     surface = part.front().surface;
 }
 
-// Of glass, with a conic and an aspheric term now and then.
+// Adds a lens of glass, with a conic and an aspheric term now and then.
 void add_singlet(std::vector<Surface>& train, double distance, bool dispersive, Random& random) {
     const double glass = random.between(1.45, 1.9);
     const double radius = random.of_any_size(1, 12);
@@ -112,7 +112,7 @@ Illuminator random_illuminator(Random& random, bool symmetric) {
     return result;
 }
 
-// Of the hemisphere, about the normal.
+// The box of all light that the source emits into the hemisphere about its normal.
 EmissionBox whole_of(const DiscSource& source) {
     EmissionBox whole;
     whole[from_axis] = {0, source.radius};

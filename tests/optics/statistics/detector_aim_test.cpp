@@ -75,8 +75,8 @@ std::vector<Named> microscopes() {
     return all;
 }
 
-// Of light that is emitted into the disc and meets the detector after one scatter at some height: how far it leaves
-// from its middle, both ways, in half sides of the rectangle.
+// The distances, from the middle of the aim and along both of its sides, at which light leaves the source that meets
+// the detector after one scatter at some height: in half sides of the aim's rectangle.
 std::vector<glm::dvec2> seen_directions(const Instrument& instrument, double greatest_height) {
     const auto& constants = instrument.constants;
     const glm::dvec2 sides = instrument.single_scatter_aim.value();

@@ -27,8 +27,8 @@ std::vector<Surface> part(const optics::Instrument& instrument, int first, int c
     return {instrument.surfaces.begin() + first, instrument.surfaces.begin() + first + count};
 }
 
-// Both trains of microscopes with aspheres, under rays of which most end on their way; and lenses so strong that much
-// is missed or totally reflected.
+// Trains of two kinds: illumination and imaging of microscopes with aspheres, under rays of which most end on their
+// way, and lenses so strong that many rays miss them or are totally reflected.
 std::vector<Train> trains() {
     std::vector<Train> result;
     for (const char* objective : {"5x_0.15", "20x_0.41", "100x_0.83"}) {

@@ -149,7 +149,7 @@ TEST(TrainPolynomials, EndAMillionRaysAsTheTraceDoes) {
     }
 }
 
-// What depends on more than the ray, or too much of whose light comes near edges, is traced.
+// An illumination is traced that depends on more than the ray, or of whose light too much comes near edges.
 TEST(TrainPolynomials, LeaveOtherIlluminationsToTheTrace) {
     auto instrument = microscope("10x_0.28");
     ASSERT_TRUE(optics::fit_illumination(instrument));

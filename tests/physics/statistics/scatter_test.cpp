@@ -181,7 +181,8 @@ double deviation_p(const Material& material, double theta, uint seed, uint draws
 
 } // namespace
 
-// What lossy ones keep is for their own tests.
+// A density integrates to one over the hemisphere, or to 0 for a mirror; for lossy models no more than one is asked
+// here, and their own tests know what they keep.
 TEST(Scatter, EveryDensityIntegratesToOne) {
     int integrated = 0;
     for (const auto& [name, delta, lossy, material] : cases()) {
@@ -460,8 +461,8 @@ TEST(Scatter, FloatDrawsTheSameDirectionsAsDouble) {
                          float(lobe.parameter_3),
                          {}};
         std::ranges::transform(lobe.table, single.lobe_0.table, [](double value) { return float(value); });
-        // What draws in the plane of direction cosines has its precision there; their height over the surface loses it
-        // near the horizon.
+        // Models that draw in the plane of direction cosines have their precision there; the height of the direction
+        // over the surface loses it near the horizon.
         const bool in_cosines = lobe.model == SCATTER_ABG || lobe.model == SCATTER_HARVEY_SHACK;
         uint count = 0;
         for (uint k = 0; k < 20000; ++k) {

@@ -307,7 +307,7 @@ void scatter(double g, Generator& generator, Rays& rays, const Normals& normals)
             const double mx = pending.mx[k], my = pending.my[k], mz = pending.mz[k];
             double dx, dy, dz, least;
             if (from_cosine) {
-                // It and the normal added up follow the cosine law.
+                // The point of the sphere and the normal, added up, follow the cosine law.
                 dx = pending.nx[k] + sx;
                 dy = pending.ny[k] + sy;
                 dz = pending.nz[k] + sz;
@@ -318,7 +318,7 @@ void scatter(double g, Generator& generator, Rays& rays, const Normals& normals)
                 const double base = (1 - g) * (1 - g) / (1 + g * g - 2 * g * (dx * mx + dy * my + dz * mz));
                 least = base * std::sqrt(base);
             } else {
-                // Its part at right angles to the mirror direction has a uniform azimuth.
+                // The point's part at right angles to the mirror direction has a uniform azimuth.
                 const double ratio = (1 - g * g) / (1 - g + 2 * g * u3[k]);
                 const double cosine = g != 0 ? (1 + g * g - ratio * ratio) / (2 * g) : 2 * u3[k] - 1;
                 const double along = sx * mx + sy * my + sz * mz;
@@ -516,7 +516,7 @@ void land(const Lane& found, const Lane& distance, Rays& rays, Normals& normals)
     rays.count = kept;
 }
 
-// One thread's share.
+// A thread and its share of the rays.
 template <int width>
 class Worker {
   public:

@@ -63,7 +63,7 @@ TEST(FewImages, InRandomOrderAreNotMeasured) {
 }
 
 TEST(FewImages, TellWhatPassesByChance) {
-    // Of seven values in random order a share of 0.03 to 0.1 is unimodal, by their form.
+    // A share of 0.03 to 0.1 of stacks of seven values in random order is unimodal, depending on their form.
     const ModelStack stack = model_stack(7, 1, false, 4);
     const Topography topography = reconstruct(stack.images, stack.z, 0, 0, 1, {});
     EXPECT_EQ(topography.stack.limit.least.unimodality, most_unimodality_asked);

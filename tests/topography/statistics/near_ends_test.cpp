@@ -136,8 +136,8 @@ TEST(NearTheEnds, WhatIsInTheScanIsMeasuredByTheMeasuresForNoise) {
     }
 }
 
-// One part is in focus over more images than the other, as a window upon a slope is, and the stack's width is that of
-// neither.
+// A part of the field is in focus over more images than the other, as a window upon a slope is, and the stack's width
+// is that of neither part.
 TEST(NearTheEnds, PartsOfDifferentDepthsOfFocusAreMeasuredEachByItsOwnWidth) {
     constexpr int images = 61, margin = 8; // of windows that see both parts
     for (const double from_end : {3.0, 4.0, 6.0}) {

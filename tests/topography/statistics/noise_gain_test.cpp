@@ -296,7 +296,7 @@ TEST(FocusChoice, IsByTheNoiseOfTheStack) {
         ASSERT_TRUE(options.settled());
         const bool counts = deviation > 0.1;
         EXPECT_EQ(*options.focus_measure, counts ? where_noise_counts : where_noise_is_low) << deviation;
-        // What else is chosen is by the measure chosen.
+        // The average along z is chosen for the measure chosen.
         EXPECT_EQ(*options.smoothing_steps, counts ? by_chosen.suitable_smoothing() : fine) << deviation;
         TopographyOptions single{.focus_measure = std::nullopt, .smoothing_steps = 0};
         probes.settle(single);

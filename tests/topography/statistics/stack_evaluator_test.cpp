@@ -324,7 +324,7 @@ TEST(Reconstruct, RejectsWhatItCannotEvaluate) {
     EXPECT_THROW(stack({0, 1, 2}, broken), InputError);
 }
 
-// What the evaluator asks for, and when.
+// Checks that the evaluator asks for its planes in order, and only for images that are still kept.
 class WatchedPlanes final : public FocusPlanes {
   public:
     explicit WatchedPlanes(const FocusPlanesPlan& plan) : plan_(plan), planes_(make_host_focus_planes(plan)) {}

@@ -155,7 +155,7 @@ TEST(Persistence, TheLimitIsExceededAtItsRate) {
         curve.joint_squares = images * kept;
         exceeded += limit.exceeded_by(curve, 1) ? 1 : 0;
     }
-    // One place of the scan has its share of the rate.
+    // A single place of the scan has its share of the rate.
     const double expected = rate / (images * kept) * samples;
     EXPECT_NEAR(exceeded, expected, 0.15 * expected + 4 * std::sqrt(expected));
 }
