@@ -1,4 +1,4 @@
-// Commands by name and as options, and what is told of them: all of it from the same declarations.
+// Commands by name and as options, and all that is told of them, come from the same declarations.
 #include "app/commands.hpp"
 #include "app/program.hpp"
 #include "app/version.hpp"
@@ -153,7 +153,7 @@ std::string good_value(const app::Option& option) {
                                      : fmt::format("{}", std::max(1, option.range.first));
 }
 
-// In this process: there are hundreds.
+// The command line is read within this process, as there are hundreds of cases.
 std::string refusal_of(Words words) {
     words.insert(words.begin(), "vkfv");
     std::vector<char*> values;

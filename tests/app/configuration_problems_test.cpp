@@ -37,7 +37,7 @@ std::vector<InputProblem> problems_of(const std::vector<std::string>& lines, con
     return {};
 }
 
-// Where "key = value" on one line begins its value; none for other lines.
+// The place where the value of "key = value" on one line begins; none for other lines.
 std::optional<std::size_t> value_in(const std::string& line) {
     const auto equals = line.find(" = ");
     const bool whole =

@@ -15,7 +15,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// A mirror with waves of 50 nm: below lambda / (4 pi) = 44 nm of standard deviation.
+// The specimen is a mirror with waves of 50 nm amplitude: below lambda / (4 pi) = 44 nm of standard deviation.
 constexpr const char* mirror_stack = R"([source]
 radius_mm = 1.3
 wavelength_um = 0.55

@@ -1,4 +1,5 @@
-// report.html in a browser: tests/acceptance/check_report moves, drags and plays, and compares with the files beside.
+// A browser shows report.html: tests/acceptance/check_report moves, drags and plays, and compares with the files
+// beside.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -46,7 +47,7 @@ TEST(Report, OfAStackWorksInABrowser) {
     EXPECT_EQ(*failures, "");
 }
 
-// Along the axis numbers so wide that not each of its ticks can have one.
+// The numbers along the axis are so wide that not each of its ticks can have one.
 TEST(Report, OfASweepWorksInABrowser) {
     const auto folder = fresh_folder("sweep_report");
     write_file(folder / "c.toml", small_configuration +

@@ -67,7 +67,7 @@ std::size_t images_in(const std::filesystem::path& folder) {
     return count;
 }
 
-// Starts the program and kills it with SIGKILL once `images` are there; whether it was still running then.
+// Starts the program and kills it with SIGKILL once `images` are there; returns whether it was still running then.
 bool run_and_kill(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                   const std::filesystem::path& stack, std::size_t images) {
     const pid_t child = fork();
@@ -135,8 +135,8 @@ TEST(Reproducibility, EveryRowOfTheLedgerCloses) {
     EXPECT_EQ(rows, 9);
 }
 
-// The demo by every traversal: the same paths meet the same facets, so the images differ only where a
-// path's fate hangs on the last bit, far below their own noise.
+// By every traversal the demo's paths meet the same facets, so the images differ only where a path's fate hangs on the
+// last bit, far below their own noise.
 TEST(Reproducibility, TheDemoIsTheSameByEveryTraversal) {
     const auto folder = fresh_folder("traversals");
     const auto image = [&](const std::string& name, const std::vector<std::string>& further) {

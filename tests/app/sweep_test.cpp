@@ -1,4 +1,4 @@
-// vkfv --sweep: every combination, once, with the noise that its rays make.
+// vkfv --sweep traces every combination once, with the noise that its rays make.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 
@@ -59,8 +59,8 @@ TEST(Sweep, ImagesOfEveryCombination) {
     ASSERT_EQ(rows[0][0], "g");
     ASSERT_EQ(rows[0][2], "signal to noise");
     const auto ratio = [&](std::size_t row) { return std::stod(rows[row][2]); };
-    // Sixteen times the rays, four times the ratio. With n rays detected its own relative error is 1 / (2 sqrt(n));
-    // five of them for the fewest, some 500, are 11 %.
+    // Sixteen times the rays give four times the ratio of signal to noise. With n rays detected its own relative error
+    // is 1 / (2 sqrt(n)); five of these for the fewest rays, some 500, are 11 %.
     EXPECT_NEAR(ratio(2) / ratio(1), 4, 0.45);
     EXPECT_NEAR(ratio(4) / ratio(3), 4, 0.45);
     EXPECT_GT(ratio(3), 1.2 * ratio(1)); // a mirror sends more light back into the pupil

@@ -256,8 +256,8 @@ int run_script(const fs::path& folder, const std::string& script) {
 }
 
 // `vkfv` as the documents call it: the program, with few rays, pixels and images where it traces, and without waves.
-// `optics`, `bench` and what is to be checked alone take long whatever is asked of them: `layout` reads the same
-// configuration.
+// `optics`, `bench` and configurations that are to be checked alone take long whatever is asked of them: `layout` reads
+// the same configuration.
 const std::string small_vkfv = R"(#!/usr/bin/env bash
 command=${1#--}
 words=("$1")
@@ -308,7 +308,7 @@ void write_stack(const fs::path& file, const fs::path& folder) {
     pages->close();
 }
 
-// A folder as that of a checkout, with the files that documents take for granted.
+// Fills a folder as a checkout is, with the files that documents take for granted.
 void furnish(const fs::path& folder) {
     fs::create_directories(folder / "bin");
     write_file(folder / "bin/vkfv", replaced(small_vkfv, "PROGRAM", program()));
@@ -341,7 +341,7 @@ bool next_command(std::istream& lines, std::string& command) {
     return found;
 }
 
-// Runs the commands of a document, in their order. What failed: "line: command: output".
+// Runs the commands of a document, in their order. Returns a line of "line: command: output" for each that failed.
 std::vector<std::string> failures_of(const std::string& text, const fs::path& folder) {
     declare();
     furnish(folder);

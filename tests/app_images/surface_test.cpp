@@ -1,4 +1,4 @@
-// vkfv --surface through the real program.
+// vkfv --surface, through the real program, finds the parameters that closed forms give.
 #include "app/program.hpp"
 #include "core/mathematics/units.hpp"
 #include "images/image_file.hpp"
@@ -25,8 +25,8 @@ using Json = nlohmann::json;
 constexpr double um = 1e-3; // mm
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
-// On a tilt and an offset ten whole periods of a wave of 0.5 um along x, 12 points long and even about the middle,
-// which makes it orthogonal to the tilt; 1 x 2 um apart.
+// A map of ten whole periods of a wave of 0.5 um along x upon a tilt and an offset. The wave is 12 points long and even
+// about the middle, which makes it orthogonal to the tilt; points are 1 x 2 um apart.
 HeightMap wavy() {
     HeightMap map{.height = Grid<double>(120, 50), .x0 = 10 * um, .y0 = -20 * um, .pitch_x = 1 * um, .pitch_y = 2 * um};
     for (int row = 0; row < map.rows(); ++row) {
@@ -90,7 +90,7 @@ TEST_F(Surface, TakesTheProfileWhereItIsAskedFor) {
     EXPECT_NEAR(along_y["profile"]["Rq_um"], 0, 1e-9);
     EXPECT_NEAR(along_y["profile"]["section_length_um"], 98 / 5.0, 1e-9);
     EXPECT_EQ(along_y["parameters"], report({"wavy.x3p"})["parameters"]);
-    // Along the middle row it is the default's.
+    // The profile along the middle row is the default's.
     const auto row = report({"wavy.x3p", "--profile", "10,30,129,30"});
     EXPECT_NEAR(row["profile"]["Rz_um"], report({"wavy.x3p"})["profile"]["Rz_um"], 1e-9);
     EXPECT_GT(row["profile"]["Rq_um"], 0.3);
@@ -102,7 +102,7 @@ TEST_F(Surface, FiltersAsTold) {
     const double half = 0.25 / std::sqrt(2);
     EXPECT_NEAR(report({"wavy.x3p", "--s_filter_um", "12"})["parameters"]["Sq_um"], half, 0.2 * half);
     EXPECT_NEAR(report({"wavy.x3p", "--l-filter-um", "12"})["parameters"]["Sq_um"], half, 0.2 * half);
-    // 1 / (1 + 2^4) of the spline, 2^-4 of the Gaussian.
+    // At half the nesting index the spline passes 1 / (1 + 2^4) of the wave, the Gaussian 2^-4.
     const auto spline = report({"wavy.x3p", "--s_filter_um", "24", "--filter", "spline"});
     EXPECT_NEAR(spline["parameters"]["Sq_um"], 2 * half / 17, 0.5 * 2 * half / 17); // natural ends follow more
     EXPECT_EQ(spline["treatment"],

@@ -166,7 +166,7 @@ TEST_F(File, LinesAreAppended) {
     EXPECT_THROW(vkfv::append_line("/dev/full", "1"), vkfv::RunError);
 }
 
-// FIPS 180-4's example.
+// The sum is that of FIPS 180-4's example.
 TEST(Digest, IsThatOfTheStandard) {
     vkfv::Digest digest;
     digest.add("a");

@@ -47,8 +47,8 @@ TEST(Progress, PlainLinesTellImagesRateAndTimeLeft) {
 }
 
 TEST(Progress, PlainLinesComeAtMostEveryTwoSeconds) {
-    // 100 images in 10 s: at 0.1 s, then each time two seconds have passed (2.1, 4.1, 6.1, 8.1), and the
-    // last.
+    // In 10 s, 100 images are told of at 0.1 s, then each time two seconds have passed (2.1, 4.1, 6.1, 8.1), and at the
+    // end.
     EXPECT_EQ(split(report(Progress::Style::lines, 100, 0, 100ms), '\n').size(), 6u);
 }
 

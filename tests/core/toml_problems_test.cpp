@@ -1,4 +1,4 @@
-// Several problems at once: each is told once, in the order of places, and none that another one caused.
+// Of several problems at once each is told once, in the order of places, and none that another one caused.
 #include "core/toml/toml_reader.hpp"
 
 #include <gmock/gmock.h>
@@ -86,7 +86,7 @@ TEST(TomlProblems, TenAreToldAndTheRestCounted) {
                                testing::EndsWith("\nand 2 more")));
 }
 
-// However many there are, it ends soon.
+// The list ends soon, however many problems there are.
 TEST(TomlProblems, AreBounded) {
     std::string text = scan + lens;
     for (int i = 0; i < 5000; ++i) {
@@ -96,11 +96,11 @@ TEST(TomlProblems, AreBounded) {
 }
 
 TEST(TomlProblems, ConsequencesAreNotTold) {
-    // A check of two values of which one could not be read.
+    // A check of two values is left out where one of them could not be read.
     auto problems = problems_of("[scan]\nz_start_um = 5\nz_stop_um = \"high\"\nz_step_um = 1\nbehind = true\n" + lens);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].key, "scan.z_stop_um");
-    // The check itself; what it left unread is not unknown.
+    // The check itself is the only problem: keys that it left unread are not unknown.
     problems = problems_of("[scan]\nz_start_um = 5\nz_stop_um = 1\nz_step_um = 1\nbehind = true\n" + lens);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].expected, "a number above z_start_um");

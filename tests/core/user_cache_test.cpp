@@ -21,7 +21,7 @@ TEST_F(UserCache, GivesBackWhatWasKept) {
     EXPECT_TRUE(read_cached("other").empty());
     write_cached("some", std::span(data_).first(10));
     EXPECT_EQ(read_cached("some").size(), 10U);
-    // Nothing is left aside.
+    // No temporary file is left beside the entry.
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(*cache_folder()), {}), 1);
 }
 

@@ -1,4 +1,4 @@
-// The real program with one of its calls failing.
+// Runs the real program with one of its calls failing.
 #pragma once
 
 #include "app/program.hpp"
@@ -24,7 +24,8 @@ std::string text_of(const Fault& fault);
 // caller to choose.
 std::vector<Fault> counted_calls(const std::filesystem::path& log);
 
-// VKFV_EVERY_FAULT in the environment: with every effect that there is, instead of those that take a CI machine's time.
+// Whether VKFV_EVERY_FAULT is in the environment: every effect is tried, instead of those that a CI machine has time
+// for.
 bool every_fault();
 
 using Environment = std::map<std::string, std::string>;
