@@ -1,8 +1,8 @@
-// Files as Gwyddion's own import modules see them. Gwyddion is under the GPL: test programs alone are linked with it,
-// and they are never shipped.
+// Reads files by Gwyddion's own import modules. Gwyddion is under the GPL: test programs alone are linked with it, and
+// they are never shipped.
 #pragma once
 
-// Before Gwyddion's macros of the same names.
+// This header comes before Gwyddion's macros of the same names.
 #include <libintl.h>
 
 #include <libgwyddion/gwyutils.h>

@@ -1,4 +1,4 @@
-// A stack in one TIFF: OpenImageIO reads each page; ImageJ's rule is that all values stand in one block, first to last.
+// OpenImageIO reads each page of a stack in one TIFF; by ImageJ's rule all values stand in one block, first to last.
 #include "images/tiff_stack.hpp"
 
 #include "images/image_file.hpp"
@@ -92,7 +92,7 @@ TEST(TiffStack, IsABigTiffBeyondFourGigabytes) {
     stack.columns = stack.rows = 22000;
     EXPECT_EQ(version(), 43);
     const std::string head = tiff_stack_head(stack);
-    // The header of 16 bytes, then a directory: number of entries, then entries of 20 bytes in ascending order.
+    // The header has 16 bytes; then comes a directory: number of entries, then entries of 20 bytes in ascending order.
     std::uint64_t entries = 0;
     std::memcpy(&entries, head.data() + 16, sizeof entries);
     std::uint16_t before = 0;

@@ -1,5 +1,5 @@
-// Plain TIFFs by libtiff: OpenImageIO reads what is written and writes what is read; of any other file the readers say
-// what OpenImageIO says.
+// libtiff reads and writes plain TIFFs: OpenImageIO reads what is written and writes what is read; of any other file
+// the readers say what OpenImageIO says.
 #include "images/tiff.hpp"
 
 #include "core/messages/error.hpp"
@@ -25,7 +25,7 @@
 namespace vkfv::images {
 namespace {
 
-// Every kind of float there is, NaNs by their bits.
+// An image of every kind of float there is, NaNs by their bits.
 std::vector<Grid<float>> all_kinds(int columns, int rows, int channels) {
     using limits = std::numeric_limits<float>;
     const std::vector<float> kinds = {0.0f,
@@ -276,7 +276,7 @@ TEST_F(PlainTiffs, PagesAreOpenImageIOs) {
     expect_as_the_module({std::istreambuf_iterator<char>(stream), {}}, "two pages");
 }
 
-// Every byte of a directory another, and many ends of a file.
+// Each byte of a directory is changed, and a file is cut off at many places.
 TEST_F(PlainTiffs, DamagedFilesGiveWhatOpenImageIOGives) {
     Grid<float> heights(4, 3);
     for (std::size_t k = 0; k < 12; ++k) {

@@ -37,7 +37,7 @@ std::vector<double> positions() {
     return result;
 }
 
-// The height that is told of a surface at `height`; noise: of each value of the curve, whose maximum is 1.
+// The height that is told of a surface at `height`; `noise` is that of each value of the curve, whose maximum is 1.
 double measured(const scan::StageMotion& motion, double height, double noise, std::mt19937& random) {
     std::normal_distribution<double> normal;
     const auto nominal = positions();
@@ -60,7 +60,8 @@ double measured(const scan::StageMotion& motion, double height, double noise, st
     return nominal.at(static_cast<std::size_t>(first + largest)) + step * fit.offset;
 }
 
-// Standard deviation of the heights' errors over a slope, apart by more than a curve is wide, and over ten seeds.
+// The standard deviation of the heights' errors over a slope, at points farther apart than a curve is wide, and over
+// ten seeds.
 double height_noise(scan::Stage stage, double noise) {
     std::mt19937 random(7);
     double squares = 0;
@@ -88,7 +89,7 @@ TEST(StageErrors, OfTheScaleAreThoseOfHeights) {
     }
 }
 
-// 2800 heights: 1.3 % of statistical error.
+// The statistical error of 2800 heights is 1.3 %.
 TEST(StageErrors, JitterMovesHeightsAsLeastSquaresSays) {
     scan::Stage stage;
     stage.jitter = 0.1 * step;
@@ -101,7 +102,7 @@ TEST(StageErrors, NoiseOfTheFocusValueMovesHeightsAsLeastSquaresSays) {
     EXPECT_NEAR(height_noise({}, 0.003) / (1.062 * 0.003 * std::sqrt(width * step)), 1, 0.05);
 }
 
-// On a slope a vibration is seen as a ripple of its aliased frequency, whatever its phase: ten seeds.
+// On a slope a vibration is seen as a ripple of its aliased frequency, whatever its phase: ten seeds give ten phases.
 class Ripple : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(Ripple, OfAVibrationHasItsAliasedFrequency) {

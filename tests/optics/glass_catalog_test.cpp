@@ -192,7 +192,7 @@ TEST(GlassCatalog, AnUnknownGlassIsNamedAndNoOtherSuggested) {
         EXPECT_THAT(message(name), HasSubstr("\"" + std::string(name) + "\""));
         EXPECT_THAT(message(name), ::testing::Not(HasSubstr("Did you mean")));
     }
-    // A code is no glass; what to write is said.
+    // A code is no glass; the message says what to write.
     EXPECT_THAT(message("516640"), HasSubstr("nd = 1.516 and vd = 64.0"));
 }
 
@@ -254,7 +254,7 @@ TEST(GlassCatalog, CataloguesAgreeToAMillionthOfTheIndexWhereTheLensIsUsed) {
     const auto crossing = both(-0.002, " 0.001");
     EXPECT_THROW(crossing.find("G"), InputError);
     EXPECT_TRUE(crossing.find("G", {.used = {.minimum_um = 0.5, .maximum_um = 0.5}}));
-    // Where none of both is valid they cannot agree.
+    // Catalogues cannot agree where none of both is valid.
     EXPECT_THROW(both(1e-9, "").find("G", {.used = {.minimum_um = 1, .maximum_um = 2}}), InputError);
 }
 

@@ -24,7 +24,7 @@ std::vector<PlacedSurface> placed(const Prescription& lens) {
     return place_prescription(lens, Spectrum::line(test::d_line_um), {}, {}, end);
 }
 
-// The surfaces and their frames.
+// Surfaces and their frames come back to the bit.
 TEST(Prescription, ReversedTwiceIsItself) {
     const auto lens = placed(test::microscope().illumination);
     const auto once = reversed(lens);
@@ -56,7 +56,7 @@ std::vector<physics::f64::Surface> surfaces_of(const Prescription& lens) {
     return train;
 }
 
-// Focal lengths at the d line, as two other programs print them (nine decimals).
+// The truth is the focal lengths at the d line, as two other programs print them (nine decimals).
 TEST(Prescription, AssetsHaveTheirFocalLengths) {
     struct Row {
         const char* folder;
@@ -86,14 +86,14 @@ TEST(Prescription, AssetsHaveTheirFocalLengths) {
     }
 }
 
-// Conic and asphere, against rays of two other programs (double precision).
+// Rays of two other programs (double precision) are the truth for conic and asphere.
 TEST(Prescription, CondenserAgreesWithReferenceRays) {
     const auto folder = test::source_folder() / "tests" / "data" / "rays";
     const auto in = test::read_rows(folder / "condenser_acl2520.in.csv");
     const auto out = test::read_rows(folder / "condenser_acl2520.out.csv");
     ASSERT_EQ(in.size(), out.size());
     ASSERT_GE(in.size(), 500u);
-    // Backward: collimated light comes in, the source's plane is the focal plane.
+    // The condenser is passed backward: collimated light comes in, the source's plane is the focal plane.
     auto part = reversed(placed(load_prescription("condenser_acl2520", "illuminators", test::source_folder())));
     link(part, part.front().pose);
     auto train = surfaces_of(part);

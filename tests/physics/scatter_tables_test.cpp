@@ -17,8 +17,8 @@ namespace f32 = vkfv::physics::f32;
 
 } // namespace
 
-// N = sum over l of (2 l + 1) / 2 g^l P_l(cos(theta_i)) c_l with c_l the integral of mu P_l(mu) over [0, 1]: 1/2, 1/3,
-// then 0 for odd l and c_2 = 1/8, c_{2k+2} = -c_{2k} (2k - 1) / (2k + 4).
+// The norm is N = sum over l of (2 l + 1) / 2 g^l P_l(cos(theta_i)) c_l with c_l the integral of mu P_l(mu) over [0,
+// 1]: 1/2, 1/3, then 0 for odd l and c_2 = 1/8, c_{2k+2} = -c_{2k} (2k - 1) / (2k + 4).
 TEST(ScatterTables, TheNormIsThatOfTheLegendreSeries) {
     const auto series = [](double g, double cosine) {
         double sum = 0.25 + g * cosine / 2;
