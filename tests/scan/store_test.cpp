@@ -116,7 +116,7 @@ TEST(ImageStore, ImagesTellTheirPitchHeightAndDistance) {
     EXPECT_THAT(text, HasSubstr("\nimage=2\nz_um=0.4\n"));
 }
 
-// images.tif: pages are read by ImageJ's rule, all values behind each other up to the file's end.
+// The pages of images.tif are read by ImageJ's rule: all values stand behind each other up to the file's end.
 TEST(ImageStore, AllImagesInOneFileAreTheSingleOnes) {
     const FreshFolder folder("stack_file");
     run(folder.path(), FakeTracer(), describe());
@@ -265,7 +265,7 @@ TEST(ImageStore, ShardsShareAFolder) {
     const FreshFolder shared("shared");
     run(whole.path(), FakeTracer(), describe(9));
     {
-        // All of them at a time; nobody else may write, nor the same shard twice.
+        // All shards write at a time; nobody else may, nor the same shard twice.
         ImageStore first(shared.path(), describe(9), {0, 3});
         ImageStore second(shared.path(), describe(9), {1, 3});
         EXPECT_THROW(ImageStore(shared.path(), describe(9)), FolderInUse);

@@ -16,10 +16,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Programs that start the program that their arguments name.
 WRAPPERS = {"command", "env", "exec", "nice", "sudo", "time", "timeout", "xargs", "xvfb-run"}
-# Functions of our scripts that do so, with how many arguments stand before the program.
+# Functions of our scripts that start a program, with the number of arguments that stand before it.
 FUNCTIONS = {"step": 1, "inside": 0, "inside_root": 1}
 SHELLS = {"bash", "sh"}
-# C++ functions of the tests that start what a string says.
+# C++ functions of the tests that start the program which a string names.
 RUNNERS = r"(?:std::system|popen|shell|run_script)"
 
 
@@ -246,7 +246,7 @@ def tracked(changelog=False):
     texts = {}
     for name in listed:
         path = ROOT / name
-        # The program itself starts none but what its options name.
+        # The program itself starts no other programs than its options name.
         if not name or name.startswith(("src/", "assets/", "tests/data/", "tests/fuzz/corpus/")) and not name.endswith(".cmake"):
             continue
         if name == "CHANGELOG.md" and not changelog or not path.is_file():

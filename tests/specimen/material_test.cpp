@@ -1,4 +1,4 @@
-// Materials as lobes by name, and the record that the trace takes.
+// Materials name lobes, of which the trace takes a record.
 #include "physics/scatter_registry.hpp"
 #include "specimen/description.hpp"
 
@@ -54,7 +54,7 @@ TEST(Material, BecomesTheRecordLobeByLobe) {
     EXPECT_EQ(record.lobe_1.weight, 0.2);
     EXPECT_EQ(record.lobe_2.weight, 0.3);
     EXPECT_EQ(record.lobe_3.weight, 0);
-    // Nothing said: Lambertian, white.
+    // A material of which nothing is said is Lambertian and white.
     const auto standard = material_record({});
     EXPECT_EQ(standard.lobe_0.model, physics::f64::SCATTER_HENYEY_GREENSTEIN);
     EXPECT_EQ(standard.lobe_0.weight, 1);

@@ -1,4 +1,4 @@
-// Electrons and normal deviates against their distributions, computed otherwise: probabilities by std::lgamma, and
+// Electrons and normal deviates follow their distributions, computed otherwise: probabilities by std::lgamma, and
 // Pearson's chi-square over 10^6 draws at each mean.
 #include "statistics/poisson.hpp"
 

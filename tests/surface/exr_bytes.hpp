@@ -51,7 +51,7 @@ inline std::string ExrBytes::header(int part) const {
     std::string box;
     for (const std::int32_t side : window)
         box += int32(side);
-    // Type 2 is float32; linearity and three reserved bytes; sampling in x and y.
+    // A channel is of type 2, float32; then follow linearity and three reserved bytes, and sampling in x and y.
     const std::string described = channel + '\0' + int32(2) + int32(0) + int32(1) + int32(1);
     attribute("channels", "chlist", described + '\0');
     attribute("compression", "compression", std::string(1, '\0'));

@@ -57,7 +57,7 @@ optics::Prescription singlet(const char* glass, double radius, double semi_diame
     return optics::parse_prescription(text, "singlet.toml");
 }
 
-// The condenser of another glass, with its curvature and distance for the same focal length.
+// Replaces the condenser by one of another glass, with its curvature and distance for the same focal length.
 void use_condenser_of(optics::InstrumentDescription& description, const char* glass) {
     constexpr double focal_length = 26;
     const auto glasses = optics::GlassCatalog::builtin();
