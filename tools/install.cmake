@@ -13,7 +13,7 @@ install(TARGETS vkfv_openimageio LIBRARY DESTINATION lib/vkfv)
 install(DIRECTORY ${assets} DESTINATION ${CMAKE_INSTALL_DATADIR}/vkfv
         PATTERN "*-out" EXCLUDE)
 
-# Where Debian's Python looks.
+# Debian's Python looks for packages here.
 install(DIRECTORY tools/python/vkfv DESTINATION lib/python3/dist-packages PATTERN "__pycache__" EXCLUDE)
 
 # The documents keep their places beside each other, so that their links hold.

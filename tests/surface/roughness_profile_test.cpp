@@ -35,8 +35,8 @@ TEST(RoughnessProfile, TakesTheFilterThatIsAsked) {
     const RoughnessProfile none = measured(map, {.kind = Kind::nesting_index, .nesting_index = 0});
     EXPECT_EQ(none.l_filter, 0);
     EXPECT_NEAR(none.parameters.ra, ra, 0.005 * ra);
-    // By ISO 16610-21 half of a wave of the cut-off wavelength is short; ends of 5 % of the profile are filtered by half
-    // a window.
+    // By ISO 16610-21 half of a wave of the cut-off wavelength is short; ends of 5 % of the profile are filtered by
+    // half a window.
     const RoughnessProfile half = measured(map, {.kind = Kind::nesting_index, .nesting_index = 0.05});
     EXPECT_NEAR(half.parameters.ra, ra / 2, 0.03 * ra);
     EXPECT_NEAR(fifth.parameters.ra, ra, 0.01 * ra);

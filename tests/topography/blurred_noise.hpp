@@ -14,7 +14,7 @@
 
 namespace vkfv::topography::test {
 
-// side x side pixels, periodic, of variance 1 and mean 0.
+// Images of side x side pixels, periodic, of variance 1 and mean 0.
 class BlurredNoise {
   public:
     // spectrum(fx, fy): power in cycles per mm before pixels of this pitch (mm) gather it, 0 beyond the cutoff.
@@ -44,10 +44,10 @@ class BlurredNoise {
             value *= static_cast<double>(power_.values.size()) / sum;
         }
     }
-    // Independent pixels.
+    // Noise of independent pixels.
     explicit BlurredNoise(int side) : power_(side, side, 1.0) {}
 
-    // The transform of the power, cut off at the reach.
+    // The correlation of neighbouring pixels: the transform of the power, cut off at the reach.
     NoiseCorrelation correlation() const {
         Grid<std::complex<double>> transform(power_.columns, power_.rows);
         std::ranges::copy(power_.values, transform.values.begin());

@@ -1,4 +1,4 @@
-// The backward estimator against the forward one, which is the arbiter, and what it promises of itself.
+// The backward estimator agrees with the forward one, which is the arbiter, and keeps what it promises of itself.
 #include "trace/device/device_tracer.hpp"
 #include "trace/host/host_tracer.hpp"
 #include "trace/interface/backward_image.hpp"
@@ -38,7 +38,7 @@ optics::InstrumentDescription small_description() {
     return small(test::microscope_description());
 }
 
-// For what does not depend on the lenses.
+// A microscope of ideal lenses, for tests that do not depend on the lenses.
 optics::InstrumentDescription ideal_description() {
     return small(test::ideal_microscope_description());
 }
@@ -75,9 +75,9 @@ trace::Image forward_image(const optics::Instrument& instrument, const specimen:
         ->expose(focal_height, 0);
 }
 
-// Probability of a greater sum over the pixels of (difference)^2 / variance. Forward counts are Poisson's about the
-// expectation, which backward knows better; backward's own variances have one degree of freedom a pixel, so what is
-// used is their sum over the field, shared out as the light is.
+// The probability of a greater sum over the pixels of (difference)^2 / variance. Forward counts are Poisson's about the
+// expectation, which backward knows better; backward's own variances have one degree of freedom a pixel, so their sum
+// over the field is used, shared out as the light is.
 double agreement(const trace::Image& forward, const trace::Image& backward) {
     const auto pixels = forward.flux.values.size();
     const auto total = [](const Grid<double>& grid) {
@@ -126,7 +126,7 @@ TEST(Backward, EstimatesTheImageThatForwardDoes) {
     expect_agreement(forward_image(instrument, steep, 4), backward_image(instrument, steep, 4));
 }
 
-// Wrong twins: a slightly sharper lobe, and a bounce too few, are told apart.
+// The wrong twins, a slightly sharper lobe and a bounce too few, are told apart.
 TEST(Backward, AnotherSpecimenDoesNotPass) {
     const auto instrument = optics::assemble(ideal_description());
     const auto rough = test::rough_specimen(0.65);
@@ -154,7 +154,7 @@ TEST(Backward, TellsTheRimOfTheSourceApart) {
     EXPECT_LT(variance(apart), 1.5 * variance(backward_image(as_one, rough, 1)));
     const auto forward = forward_image(instrument, rough, 1, 2'400'000);
     expect_agreement(forward, apart);
-    // Wrong twin: more is taken for sure than is.
+    // In the wrong twin more of the source is taken for sure than is.
     auto too_sure = instrument;
     too_sure.turned->optics.source_inner *= 1.2;
     EXPECT_LT(agreement(forward, backward_image(too_sure, rough, 1)), level);
@@ -179,7 +179,7 @@ TEST(Backward, KnowsEveryMaterial) {
     expect_agreement(forward_image(instrument, specimen, 1), backward_image(instrument, specimen, 1));
 }
 
-// GGX loses light at each event, and not the same backward: with the lobe as wide as the source's cone, sharper, and
+// GGX loses light at each event, and other light backward: with the lobe as wide as the source's cone, sharper, and
 // much wider, on facets that light meets again.
 TEST(Backward, KnowsWhatALossyLobeAbsorbs) {
     const auto instrument = optics::assemble(ideal_description());
@@ -197,7 +197,7 @@ TEST(Backward, KnowsWhatALossyLobeAbsorbs) {
     expect_agreement(forward_image(instrument, steep, 4, 2'400'000), backward_image(instrument, steep, 4));
 }
 
-// Losses at interfaces, a spectrum, parts that stand askew, a cube: whatever makes the trains differ.
+// The trains of both ways differ by losses at interfaces, a spectrum, parts that stand askew, or a cube.
 TEST(Backward, KnowsEveryInstrument) {
     const auto rough = test::rough_specimen();
     auto lossy = small_description();
@@ -242,8 +242,8 @@ TEST(Backward, EveryTraversalGivesTheSameImage) {
     }
 }
 
-// In double and in float: the same points, so the same values but for paths within rounding of an edge, and of the
-// choice between two candidates.
+// In double and in float the points are the same, so the values are the same but for paths within rounding of an edge,
+// and of the choice between two candidates.
 TEST(Backward, HostAndDeviceFollowTheSamePaths) {
     const auto instrument = optics::assemble(small_description());
     const auto specimen = test::steep_specimen(0.65);
@@ -257,7 +257,7 @@ TEST(Backward, HostAndDeviceFollowTheSamePaths) {
         difference += std::abs(device.flux.values[pixel] - host.flux.values[pixel]);
     }
     EXPECT_LT(difference, 5e-3 * total);
-    // Other points: the wrong twin.
+    // The wrong twin has other points.
     const auto other = trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 2);
     double apart = 0;
     for (std::size_t pixel = 0; pixel < host.flux.values.size(); ++pixel) {
@@ -266,7 +266,7 @@ TEST(Backward, HostAndDeviceFollowTheSamePaths) {
     EXPECT_GT(apart, 5e-3 * total);
 }
 
-// More paths than two of the largest lattices have.
+// There are more paths than two of the largest lattices have.
 TEST(Backward, HostAndDeviceFollowTheSamePathsOfThreeRandomisations) {
     auto description = small_description();
     description.detector_pixels = {2, 1};
@@ -380,8 +380,8 @@ TEST(Backward, IdentityKnowsWhatPathsAreDrawnBy) {
     }
 }
 
-// Where the pupil ends in the disc that paths start from: after so many of a lattice's points for every shift. Between
-// two numbers, the wrong twin, it is one or the other.
+// The pupil ends, in the disc that paths start from, after so many of a lattice's points for every shift. If it ended
+// between two numbers, as in the wrong twin, the number would vary.
 TEST(Backward, ThePupilsRimAddsNoNoise) {
     for (const char* objective : objectives) {
         SCOPED_TRACE(objective);
@@ -400,7 +400,8 @@ TEST(Backward, ThePupilsRimAddsNoNoise) {
         Exposure exposure{};
         exposure.top_distance = optics.object_distance;
         const Light light{.spectral = 0, .wave_number = 1 / 0.587562, .survival = 0};
-        // How many of 64 azimuths pass from the detector's corner, on a circle `times` the disc that holds all light.
+        // The number of 64 azimuths that pass from the detector's corner, on a circle `times` the disc that holds all
+        // light.
         const auto passing_at = [&](double times) {
             optics.pupil_radius = times * seen.optics.pupil_radius;
             int passing = 0;
@@ -416,7 +417,7 @@ TEST(Backward, ThePupilsRimAddsNoNoise) {
         EXPECT_EQ(passing_at(1), 0);
         EXPECT_EQ(passing_at(1.1), 0);
         EXPECT_EQ(passing_at(0.9), 64);
-        // Variance over pixels of the number of points that pass.
+        // The variance over pixels of the number of points that pass.
         const auto variance = [&](double radius) {
             optics.pupil_radius = radius;
             constexpr int pixels = 400;
@@ -437,15 +438,15 @@ TEST(Backward, ThePupilsRimAddsNoNoise) {
             }
             return squares / pixels - sum / pixels * (sum / pixels);
         };
-        // An edge at the share p between two points is a coin's throw, of the variance p (1 - p). 0.1 is a rim 0.11
-        // points off, 0.9e-3 of its radius; 0.15, of the twin's half a point at most 0.32 off: 2.5e-3.
+        // An edge at the share p between two points is a coin's throw, of the variance p (1 - p). A variance of 0.1 is
+        // a rim 0.11 points off, 0.9e-3 of its radius; 0.15, of the twin's half a point at most 0.32 off: 2.5e-3.
         const double within = std::round(plan.points * std::pow(seen.pupil_rim / chosen, 2));
         EXPECT_LT(variance(chosen), 0.1);
         EXPECT_GT(variance(seen.pupil_rim * std::sqrt(plan.points / (within + 0.5))), 0.15);
     }
 }
 
-// An LED's die: narrower than the pupil one way, wider the other.
+// The source is an LED's die: narrower than the pupil one way, wider the other.
 TEST(Backward, KnowsARectangularSource) {
     auto description = ideal_description();
     description.source.rectangle = glm::dvec2(2.4, 0.9);
@@ -453,7 +454,8 @@ TEST(Backward, KnowsARectangularSource) {
     const auto instrument = optics::assemble(description);
     const auto forward = forward_image(instrument, rough, 1, 3'000'000);
     expect_agreement(forward, backward_image(instrument, rough, 1));
-    // Wrong twins: wider, so that more of the same flux passes beside the pupil, and with its sides exchanged.
+    // The wrong twins are a wider die, so that more of the same flux passes beside the pupil, and one with its sides
+    // exchanged.
     for (const glm::dvec2 sides : {glm::dvec2(2.54, 0.9), glm::dvec2(0.9, 2.4)}) {
         auto other = description;
         other.source.rectangle = sides;
@@ -474,8 +476,8 @@ TEST(Backward, KnowsARectangularSource) {
     EXPECT_GT(aimed.rays, 2 * analog.rays);
 }
 
-// Light from one side, past the objective: segments with gaps, wide and sharp lobes, mirrors, a spectrum, a cover
-// glass.
+// The light comes from one side, past the objective: segments with gaps, wide and sharp lobes, mirrors, a spectrum, a
+// cover glass.
 TEST(Backward, KnowsARingLight) {
     auto description = ideal_description();
     description.detector_width = 0.64;
@@ -491,7 +493,7 @@ TEST(Backward, KnowsARingLight) {
     const auto instrument = optics::assemble(description);
     const auto forward = forward_image(instrument, rough, 1, 12'000'000);
     expect_agreement(forward, backward_image(instrument, rough, 1));
-    // Wrong twins: a ring a little lower, and one whose gaps stand elsewhere.
+    // The wrong twins are a ring a little lower, and one whose gaps stand elsewhere.
     for (const bool lower : {true, false}) {
         auto other = description;
         other.source.ring->elevation -= lower ? 0.03 : 0;
@@ -515,7 +517,7 @@ TEST(Backward, KnowsARingLight) {
     EXPECT_LT(agreement(under_glass, backward_image(optics::assemble(description), blind, 1)), level);
 }
 
-// Points that are drawn on a wide band are met by the rays that go there, and gaps and what is beside the band are not.
+// Rays that go to points drawn on a wide band meet it there; rays to gaps and beside the band do not.
 TEST(RingLight, IsMetWhereItIsDrawn) {
     RingLight ring{};
     ring.distance = 25;
@@ -552,7 +554,7 @@ TEST(RingLight, IsMetWhereItIsDrawn) {
     EXPECT_NEAR(area / ring_area(ring), 1, 0.03);
 }
 
-// Columns and rows are told apart, and what lies between the sensitive parts of the pixels is not seen.
+// Columns and rows are told apart, and light between the sensitive parts of the pixels is not seen.
 TEST(Backward, KnowsRectangularDetectorsWithGaps) {
     auto description = ideal_description();
     description.detector_pixels = {24, 9};
@@ -574,7 +576,7 @@ TEST(Backward, KnowsRectangularDetectorsWithGaps) {
         return std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
     };
     EXPECT_NEAR(total(backward) / total(all), 0.49, 0.01);
-    // Pixels are where those of a larger square detector are.
+    // The pixels lie where those of a larger square detector do.
     auto square = whole;
     square.detector_pixels = ImageSize::square(24);
     const auto larger = backward_image(optics::assemble(square), rough, 2, 24 * 24 * 4096);
@@ -593,7 +595,8 @@ TEST(Backward, KnowsRectangularDetectorsWithGaps) {
                 std::min(std::pow(larger.flux(column, row + 8) - smaller.flux(column, row), 2) / variance, 40.0);
         }
     }
-    // Student's t of two degrees of freedom each: heavier than a normal, hence the cut above and the wide bound.
+    // Differences follow Student's t of two degrees of freedom each: heavier than a normal, hence the cut above and the
+    // wide bound.
     EXPECT_LT(chi_square / (24 * 8), 6);
     EXPECT_GT(chi_square / (24 * 8), 0.3);
 }

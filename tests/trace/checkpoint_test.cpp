@@ -115,7 +115,7 @@ TEST_P(Checkpoint, GoesOnToTheSameBits) {
 TEST_P(Checkpoint, PartsOfSeveralDevicesGiveTheSameBits) {
     const auto tracer = tracer_of(GetParam());
     const trace::Image whole = tracer->expose(0.002, 3);
-    // Each part counts its own.
+    // Each part counts its own paths.
     const auto first = tracer->count(0.002, 3, 0, tracer->units() / 3);
     const auto second = tracer->count(0.002, 3, tracer->units() / 3, tracer->units());
     EXPECT_NE(first.numbers, second.numbers);

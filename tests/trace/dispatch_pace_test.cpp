@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint64_t most = std::uint64_t{1} << 28;
 constexpr double longest = 0.2; // s
 
-// A device that is not filled by few paths.
+// The time that a device takes which few paths do not fill.
 double seconds_of(std::uint64_t paths, double rate) {
     return std::max(100e-6, static_cast<double>(paths) / rate);
 }

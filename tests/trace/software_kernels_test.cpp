@@ -1,4 +1,4 @@
-// Kernels in the form for software devices, whose loops ask at their ends too, and in the form for GPUs: the same bits.
+// Kernels in the form for software devices, whose loops ask at their ends too, give the bits of the form for GPUs.
 #include "trace/device/device_tracer.hpp"
 #include "trace/microscope.hpp"
 

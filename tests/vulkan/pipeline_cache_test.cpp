@@ -9,7 +9,7 @@ namespace {
 
 using PipelineCache = test::OwnCache;
 
-// Opens the device, compiles a kernel and closes it; the files kept then.
+// Opens the device, compiles a kernel and closes it; returns the files kept then.
 std::vector<std::filesystem::path> compile() {
     {
         const Device device;
