@@ -27,7 +27,7 @@ bench::Measured image(std::mt19937_64& random, double mean, int shift = 0) {
 
 } // namespace
 
-// Of 400 pairs with mean counts from 0.05 a pixel (3 a block) on, p < 0.05 in 20 +- 4.4. The bounds are at 4.5 standard
+// In 400 pairs with mean counts from 0.05 a pixel (3 a block) on, p < 0.05 in 20 +- 4.4. The bounds are at 4.5 standard
 // deviations, with the conservative side open for few counts, whose chi-square varies less: the false-positive rate is
 // 7e-6.
 TEST(Agreement, EqualExpectationsAreFoundApartAsOftenAsStated) {

@@ -1,4 +1,4 @@
-// Of several problems at once each is told once, in the order of places, and none that another one caused.
+// Several problems at once are each told once, in the order of places, and none that another one caused.
 #include "core/toml/toml_reader.hpp"
 
 #include <gmock/gmock.h>

@@ -2,7 +2,7 @@
 // they are never shipped.
 #pragma once
 
-// This header comes before Gwyddion's macros of the same names.
+// libintl.h comes before Gwyddion's macros of the same names.
 #include <libintl.h>
 
 #include <libgwyddion/gwyutils.h>

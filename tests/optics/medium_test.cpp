@@ -111,7 +111,7 @@ TEST(Medium, OfThreeLinesIsAsNearToGlassesAsItSays) {
         }
     }
     EXPECT_GT(compared, 250);
-    // Of 55 glasses, whose wavelengths go together, the share is 0.95 less a little under two standard errors (0.03).
+    // The share is 0.95, less a little under two standard errors (0.03) of 55 glasses, whose wavelengths go together.
     EXPECT_GT(near, 0.9 * compared);
     EXPECT_LT(near_by_cauchy, 0.7 * compared);
 }

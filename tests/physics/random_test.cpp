@@ -180,7 +180,7 @@ Verdict battery(const Generator& generator) {
 
 } // namespace
 
-// Of 255 p-values a sound generator fails one with the probability 1/1000 (and as all is fixed, always or never).
+// A sound generator fails one of 255 p-values with the probability 1/1000 (and as all is fixed, always or never).
 // Weaker generators must be found out: five rounds, and pcg4d.
 TEST(Random, NumbersPassTheBatteryOverPathsSeedsImagesAndBlocks) {
     const auto of_rounds = [](int rounds) {

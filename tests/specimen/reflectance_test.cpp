@@ -69,7 +69,7 @@ std::string problem_of(const Reflectance& reflectance, const Rectangle& footprin
 
 } // namespace
 
-// Of 501 x 501 points about 16,000 are independent: correlations are known to about 0.008.
+// About 16,000 of 501 x 501 points are independent: correlations are known to about 0.008.
 TEST(ReflectanceNoise, HasTheCorrelationThatWasAskedFor) {
     const auto map = make_reflectance_map(noise(), square_mm, {});
     ASSERT_EQ(map.values.columns, 501);

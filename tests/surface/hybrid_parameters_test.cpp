@@ -46,7 +46,7 @@ TEST(HybridParameters, OfAnEggBoxComeNearItsGradient) {
     const double share = std::sin(pi / n) / (pi / n), exact = amplitude * k / std::sqrt(2.0);
     EXPECT_NEAR(share, 0.984, 5e-4); // 1.6 % lost
     const HybridParameters p = hybrid_parameters(map);
-    // One row is more than whole periods: a 400th of the mean square along the other axis.
+    // The map has a row more than whole periods: a 400th of the mean square along the other axis.
     EXPECT_NEAR(p.sdq, share * exact, 2e-3 * exact);
     EXPECT_NEAR(p.sdr, std::pow(share * exact, 2) / 2, 2.5e-3 * exact * exact);
     // The parameter is nearer than the mean of cells, the wrong twin.

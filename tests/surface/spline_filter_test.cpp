@@ -212,8 +212,8 @@ TEST(SplineFilter, DoesNotSeeAnOffset) {
     const HeightMap low = spline_low_pass(map, 0.02), raised_low = spline_low_pass(raised, 0.02);
     for (std::size_t k = 0; k < low.height.values.size(); ++k)
         if (!std::isnan(low.height.values[k])) {
-            // Both iterations end at the goal of 1e-5 of the heights' norm, that of 800 heights of 5e-4; rounding may
-            // end one a step apart.
+            // The two iterations end at the goal of 1e-5 of the heights' norm, that of 800 heights of 5e-4; rounding
+            // may end one a step apart.
             EXPECT_NEAR(raised_low.height.values[k] - 10, low.height.values[k], 2e-7);
         }
 }

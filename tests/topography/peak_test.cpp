@@ -101,7 +101,7 @@ TEST(Peak, TheCentreOfGravityIsThatOfWhatStandsAboveTheSmallestValue) {
 }
 
 TEST(Peak, FitsHaveTheNoiseOfTheirClosedForms) {
-    // Of 4000 noisy Gaussians each standard deviation is known to 1 / sqrt(8000) = 1.1 %.
+    // Each standard deviation of 4000 noisy Gaussians is known to 1 / sqrt(8000) = 1.1 %.
     std::mt19937 random(7);
     std::normal_distribution<double> normal(0, 0.02);
     const auto deviation = [&](int method) {

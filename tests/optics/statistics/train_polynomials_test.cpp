@@ -123,8 +123,8 @@ TEST(TrainPolynomials, AreTheSumOfTheirTerms) {
     }
 }
 
-// Of a million rays all have equal statuses except for the few that are left to the trace, and light that passes lands
-// within the errors that the fit has found; errors half as large again may be between its samples.
+// A million rays have equal statuses except for the few that are left to the trace, and light that passes lands within
+// the errors that the fit has found; errors half as large again may be between its samples.
 TEST(TrainPolynomials, EndAMillionRaysAsTheTraceDoes) {
     for (const char* objective : {"10x_0.28", "20x_0.41"}) {
         const auto instrument = microscope(objective);

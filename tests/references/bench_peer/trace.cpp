@@ -1,4 +1,4 @@
-// This file is compiled for the machine at hand with all that its compiler knows: loops over a block's rays become
+// The tracer is compiled for the machine at hand with all that its compiler knows: loops over a block's rays become
 // vector instructions.
 #include "chain.hpp"
 
