@@ -388,7 +388,7 @@ TEST(Configuration, RingLightsAimAtTheWholeSpecimen) {
     // The surface is flat: the 1e-9 leave room for the rounding alone that the specimen's top is raised by.
     EXPECT_NEAR(assemble_instrument(configuration, specimen, heights).constants.emission_sine,
                 reach / std::hypot(reach, 12 - lit), 1e-9);
-    // A focal height of 1 mm widens it.
+    // A focal height of 1 mm widens the aim.
     const std::vector<double> raised = {1.0};
     EXPECT_GT(assemble_instrument(configuration, specimen, raised).constants.emission_sine,
               reach / std::hypot(reach, 12 - lit) + 1e-3);

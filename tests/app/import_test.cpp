@@ -24,7 +24,7 @@ nlohmann::json report_of(const std::vector<std::string>& more, const std::filesy
     return nlohmann::json::parse(result.standard_output);
 }
 
-// Schott's published coefficients of N-BK7.
+// The index of N-BK7 by Schott's published coefficients.
 double index_of_n_bk7(double um) {
     const double x2 = um * um;
     return std::sqrt(1 + 1.03961212 * x2 / (x2 - 0.00600069867) + 0.231792344 * x2 / (x2 - 0.0200179144) +

@@ -63,7 +63,7 @@ cells = 8
 parts_per_pixel = 2
 )";
 
-// lambda / NA^2 in um.
+// The depth of field lambda / NA^2 in um.
 constexpr double depth_of_field_um = 0.55 / (0.4 * 0.4);
 
 void expect_honest_heights(const nlohmann::json& results) {

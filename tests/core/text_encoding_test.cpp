@@ -7,7 +7,7 @@
 namespace vkfv {
 namespace {
 
-// "ü=µ𝜆" as UTF-16.
+// The text "ü=µ𝜆" as UTF-16.
 std::string utf16(bool big_endian, bool marked) {
     std::string bytes;
     const auto append = [&](unsigned unit) {

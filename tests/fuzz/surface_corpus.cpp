@@ -139,7 +139,7 @@ int main(int argument_count, char** arguments) {
 
     write(root / "al3d" / "whole", al3d());
     write_cuts(root / "al3d", "whole", al3d());
-    // The third and the second tag's values.
+    // The values of the third and the second tag are replaced.
     write(root / "al3d" / "rows_2_31", al3d().replace(17 + 2 * 52 + 20, 10, "2147483648"));
     write(root / "al3d" / "tags_many", al3d().replace(17 + 52 + 20, 8, "99999999"));
 

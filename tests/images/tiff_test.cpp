@@ -61,7 +61,7 @@ std::string bits_of(const std::vector<Value>& values) {
     return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
-// In the file's order.
+// The values in the file's order, first row on top.
 template <class Value>
 std::vector<Value> from_top(std::span<const Grid<Value>> channels) {
     std::vector<Value> values;

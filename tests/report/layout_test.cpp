@@ -240,7 +240,7 @@ TEST_P(LayoutTest, RaysEndWhereTheSequentialTrainsSay) {
     }
 }
 
-// Every point of every path, line, rectangle and text, in user units.
+// All points of every path, line, rectangle and text, in user units.
 std::vector<glm::dvec2> points_of(const pugi::xml_node& node) {
     std::vector<glm::dvec2> points;
     for (const auto& found : node.select_nodes(".//path[not(ancestor::g[@clip-path])]")) {

@@ -9,7 +9,7 @@
 
 namespace vkfv::test {
 
-// A kind over a square.
+// A specimen of a kind over a square.
 template <class Kind>
 Kind over(double size, double pitch) {
     Kind kind;

@@ -275,7 +275,7 @@ TEST(Image, WhatTheSpecimenDoesNotReflectIsAbsorbed) {
             const auto image = on_host ? trace::make_host_tracer(instrument, plane, options())->expose(0.001, 2)
                                        : expose(instrument, plane, options());
             EXPECT_LT(std::abs(image.ledger.residual()), 1e-6 * image.ledger.emitted);
-            // The white specimen's rays came to it likewise: the same source, the same random numbers.
+            // The same rays came to the white specimen: it has the same source and the same random numbers.
             double arrived = 0;
             for (const char* name : {"detected", "escaped outside the pupil", "bounce limit", "beside the detector"}) {
                 arrived += count(white, name);

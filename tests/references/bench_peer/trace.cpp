@@ -301,7 +301,7 @@ void scatter(double g, Generator& generator, Rays& rays, const Normals& normals)
         turn(u1, count, cosines, sines);
         for (int i = 0; i < count; ++i) {
             const auto k = static_cast<std::size_t>(i);
-            // A point of the unit sphere.
+            // The direction starts as a point of the unit sphere.
             const double sz = 1 - 2 * u0[k];
             const double across = std::sqrt(std::max(1 - sz * sz, 0.0));
             const double sx = across * cosines[k], sy = across * sines[k];
