@@ -30,7 +30,7 @@ RUN = "run by tools/evidence"
 FROM_THE_PAGE = "recorded from the page, not run by tools/evidence yet"
 
 
-# What a run can depend on: the names that `depends` of a list uses, and the folders whose files they stand for.
+# The names that `depends` of a list may use for what a run depends on, and the folders whose files they stand for.
 DEPENDENCIES = {
     "kernels": ["shaders"],
     "optics": ["src/optics", "assets/objectives", "assets/tube_lenses", "assets/illuminators"],

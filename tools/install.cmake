@@ -1,4 +1,5 @@
-# What `cmake --install` puts where, and the Debian package that `cpack -G DEB` makes of it (tools/package does both).
+# The places where `cmake --install` puts files, and the Debian package that `cpack -G DEB` makes of it (tools/package
+# does both).
 include(GNUInstallDirs)
 
 set(assets objectives tube_lenses illuminators elements glasses specimens stacks schemas)
@@ -12,7 +13,7 @@ install(TARGETS vkfv_openimageio LIBRARY DESTINATION lib/vkfv)
 install(DIRECTORY ${assets} DESTINATION ${CMAKE_INSTALL_DATADIR}/vkfv
         PATTERN "*-out" EXCLUDE)
 
-# Where Debian's Python looks.
+# Debian's Python looks for packages here.
 install(DIRECTORY tools/python/vkfv DESTINATION lib/python3/dist-packages PATTERN "__pycache__" EXCLUDE)
 
 # The documents keep their places beside each other, so that their links hold.

@@ -39,7 +39,7 @@ bare_root() {
     fi
 }
 
-# leave_root FOLDER: nothing of this machine is mounted there any more; fails if something is.
+# leave_root FOLDER: unmounts all of this machine that is mounted there; fails if something stays mounted.
 leave_root() {
     local place
     for place in "$1/proc" "$1/dev"; do
@@ -54,7 +54,7 @@ remove_root() {
     leave_root "$1" && rm -rf --one-file-system "$1"
 }
 
-# inside_root FOLDER COMMAND...: runs it there, with nothing of this machine's environment.
+# inside_root FOLDER COMMAND...: runs the command there, with nothing of this machine's environment.
 inside_root() {
     local root=$1
     shift

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 struct Case {
     std::string name;
-    // Changes to the small configuration: first by second. Empty: as it is.
+    // Pieces of the small configuration and their replacements; empty if it is taken as it is.
     std::vector<std::pair<std::string, std::string>> changes;
     int exit_code = 2;
     std::vector<std::string> message; // all of these in standard error
@@ -67,7 +67,7 @@ std::string repeated(const std::string& piece, int times) {
     return text;
 }
 
-// A plate, with one more line in its first surface.
+// The text of a plate as a Zemax lens, with one more line in its first surface.
 std::string zemax_lens(const std::string& line) {
     return "MODE SEQ\nUNIT MM\nWAVL 0.5875618\nSURF 0\n  CURV 0\n  DISZ INFINITY\nSURF 1\n  " + line +
            "\n  CURV 0\n  DISZ 1\nSURF 2\n  CURV 0\n  DISZ 1\nSURF 3\n  CURV 0\n  DISZ 0\n";
@@ -95,7 +95,7 @@ Case glass_fault(const std::string& name, const std::string& medium, std::vector
                                medium}}};
 }
 
-// A fault of the instrument: one piece of the small configuration by another.
+// A fault of the instrument: a piece of the small configuration is replaced by another.
 Case instrument_fault(const std::string& name, const std::string& from, const std::string& to,
                       std::vector<std::string> message) {
     return {name, {{from, to}}, 2, std::move(message)};
@@ -1290,7 +1290,7 @@ TEST_P(BadInput, IsRefusedWithPlaceKeyExpectationAndRemedy) {
 INSTANTIATE_TEST_SUITE_P(Table, BadInput, testing::ValuesIn(cases()),
                          [](const testing::TestParamInfo<Case>& info) { return info.param.name; });
 
-// Little stack changes nothing about names of many parts.
+// A small stack changes nothing about names of many parts.
 TEST(BadInputTable, DeepNamesNeedNoStack) {
     const auto folder = fresh_folder("deep");
     for (const auto& line :

@@ -1,4 +1,4 @@
-// vkfv --bench as a user calls it.
+// vkfv --bench runs as a user calls it, and agrees with its peer.
 #include "app/program.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ TEST(Bench, ReportsWhatItMeasuredAsJsonAndPicture) {
     const auto report = nlohmann::json::parse(result.standard_output);
     EXPECT_EQ(report, nlohmann::json::parse(test::read_file(folder / "out" / "bench.json")));
     EXPECT_EQ(report["commit"], "abc");
-    // Quadtree against bvh, ray query and backward paths, and the twin that must be found apart.
+    // The four checks are quadtree against bvh, ray query and backward paths, and the twin that must be found apart.
     EXPECT_EQ(report["validation"].size(), 4u);
     for (const auto& check : report["validation"]) {
         EXPECT_TRUE(check["agrees"].get<bool>()) << check;
@@ -43,7 +43,8 @@ TEST(Bench, ReportsWhatItMeasuredAsJsonAndPicture) {
     EXPECT_NE(picture.find("</svg>"), std::string::npos);
 }
 
-// Embree and lenses in double: it shares no physics with vkfv, only the instrument that both are told of.
+// The peer traces by Embree and lenses in double: it shares no physics with vkfv, only the instrument that both are
+// told of.
 TEST(Bench, AgreesWithItsPeerAndTimesIt) {
     const auto folder = test::fresh_folder("bench_peer");
     test::write_file(folder / "c.toml", test::small_configuration);
@@ -62,7 +63,7 @@ TEST(Bench, AgreesWithItsPeerAndTimesIt) {
         EXPECT_TRUE(last["agrees"].get<bool>()) << last;
         EXPECT_GT(report["peer"]["rays_per_second"].get<double>(), 0);
     }
-    // The twin: it must be found apart, and then nothing is timed.
+    // The twin must be found apart, and then nothing is timed.
     const auto twin = folder / "twin";
     test::write_file(twin, "#!/bin/sh\nexec " + peer + " \"$@\" --set specimen.material.g=0.6\n");
     std::filesystem::permissions(twin, std::filesystem::perms::owner_all);

@@ -1,4 +1,4 @@
-// A camera's stack through the real program: the same bytes however it was taken, and grey values all the way.
+// A camera's stack through the real program has the same bytes however it was taken, and grey values all the way.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -26,7 +26,7 @@ std::string with_camera() {
                     "[camera]\npreset = \"IMX900\"\n[output]\nimages = \"uint16\"\n");
 }
 
-// Without those in which the folder's name or a time stands.
+// All files except for those in which the folder's name or a time stands.
 std::map<std::string, std::string> files_of(const fs::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -116,8 +116,8 @@ TEST(CameraStack, ThePieceOfOnesOwnMicroscopeHasItsStep) {
     EXPECT_THAT(read_file(folder / "out/images/z_0000.tif"), HasSubstr("values=grey values in DN"));
 }
 
-// Neither the type of the files' pixels, since whole grey values are the same in float32, nor where they are evaluated
-// is a part of what is measured.
+// Heights depend neither on the type of the files' pixels, since whole grey values are the same in float32, nor on
+// where the images are evaluated.
 TEST(CameraStack, IsEvaluatedToTheSameBitsOfAnyPixelTypeOnHostAndDevice) {
     const auto folder = fresh_folder("camera_types");
     write_file(folder / "c.toml", with_camera());

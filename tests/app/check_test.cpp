@@ -1,4 +1,4 @@
-// --check as a user sees it: every figure in both forms, and each warning where it belongs and nowhere else.
+// vkfv --check prints every figure in both forms, and each warning where it belongs and nowhere else.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -118,13 +118,13 @@ TEST(Check, TextHasTheSameFiguresWithinItsWidth) {
     }
 }
 
-// The figures hang together: each computed here from others by its definition.
+// Each figure is computed here from other figures by its definition.
 TEST(Check, FiguresAgreeWithTheirDefinitions) {
     const auto report = check(small_configuration);
     const auto value = [&](const char* name) { return report[name].get<double>(); };
     const double aperture = value("numerical_aperture");
     const double magnification = std::abs(value("magnification"));
-    // 0.61 is 0.6098 rounded.
+    // The factor 0.61 of the Airy radius is 0.6098 rounded.
     EXPECT_NEAR(value("airy_radius_um"), 0.61 * 0.5876 / aperture, 5e-4 * value("airy_radius_um"));
     EXPECT_NEAR(value("detector_airy_radius_um") / value("airy_radius_um"), magnification, 1e-9);
     EXPECT_NEAR(value("field_of_view_um"), 160 / magnification, 1e-9);
@@ -145,7 +145,7 @@ TEST(Check, WarnsOfACoarseScanOnly) {
 }
 
 TEST(Check, WarnsOfASpecimenLargerThanTheField) {
-    // The field is 16 um, a pixel 2; twice as large leaves no warning.
+    // The field is 16 um wide and a pixel 2 um; a specimen twice as large as the field leaves no warning.
     EXPECT_THAT(warnings_of(check(small_configuration)), Contains(HasSubstr("as large as the field of view")));
     EXPECT_THAT(warnings_of(check(replaced(small_configuration, "size_mm = 0.2", "size_mm = 0.032"))),
                 Not(Contains(HasSubstr("as large as the field of view"))));
@@ -195,7 +195,7 @@ TEST(Check, TheDemoHasNoWarning) {
     EXPECT_THAT(warnings_of(nlohmann::json::parse(result.standard_output)), ::testing::IsEmpty());
 }
 
-// A check that was made before: what it said is said again, and computed again when anything has changed.
+// A check that was made before is answered from what it said, and computed again when anything has changed.
 class KeptCheck : public ::testing::Test {
   protected:
     KeptCheck() { write_file(folder_ / "c.toml", small_configuration); }
@@ -207,7 +207,8 @@ class KeptCheck : public ::testing::Test {
         EXPECT_EQ(result.exit_code, 0) << result.standard_error;
         return result;
     }
-    // Kept figures, with the number that the file system gave each file: another one has been written anew.
+    // The files of kept figures, with the number that the file system gave each: a file with another number was written
+    // anew.
     std::map<std::string, ino_t> kept() const {
         std::map<std::string, ino_t> files;
         for (const auto& entry : std::filesystem::directory_iterator(folder_ / "cache" / "vkfv")) {
@@ -290,7 +291,7 @@ TEST_F(KeptCheck, IsMadeAnewWhereWhatWasKeptIsDamaged) {
     EXPECT_NE(kept(), files);
 }
 
-// Beside the configuration, though it is named without its folder.
+// A configuration that is named without its folder finds the prescriptions beside it.
 TEST(Check, FindsPrescriptionsBesideTheWorkingDirectory) {
     const auto folder = fresh_folder("beside");
     std::filesystem::create_directories(folder / "assets" / "objectives");

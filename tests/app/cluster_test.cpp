@@ -1,4 +1,5 @@
-// Several devices at a time, shards and their merge, what a scheduler watches, and what a stack will take.
+// Several devices at a time, shards and their merge give the bytes of one run; logs and forecasts tell a scheduler what
+// it needs.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -31,7 +32,7 @@ using testing::HasSubstr;
 
 using Words = std::vector<std::string>;
 
-// Every file but clocks and locks.
+// The bytes of every file except for those that hold times and locks.
 std::map<std::string, std::string> result_bytes(const fs::path& folder) {
     std::map<std::string, std::string> bytes;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -57,7 +58,7 @@ class Cluster : public testing::Test {
         write_file(folder_ / "c.toml", replaced(small_configuration, "rays = 2000", "rays = 200000"));
     }
 
-    // Results show the last part of their folder's name, which is "out" of all of them.
+    // Results show the last part of their folder's name, so that part is "out" for all of them.
     ProgramResult stack(const std::string& out, Words further = {}) const {
         Words words = {"stack", "c.toml", "--out", out + "/out"};
         words.insert(words.end(), further.begin(), further.end());
@@ -108,7 +109,7 @@ TEST_F(Cluster, ShardsMergeToTheBytesOfOneRun) {
     }
 }
 
-// What the traced instrument is besides that of the configuration: several, and of pixels without gaps.
+// Shards of several sources, and of pixels with gaps between them, merge to the bits of the whole stack too.
 TEST_F(Cluster, ShardsOfSeveralSourcesAndPixelsWithGapsMergeToo) {
     auto text = replaced(small_configuration, "[source]\n", "[[source]]\n");
     text = replaced(text, "wavelength_um = 0.5876\n",
@@ -156,7 +157,7 @@ TEST_F(Cluster, MergeNamesWhatIsMissingAndRefusesWhatDoesNotBelong) {
     const auto other = run_program({"merge", out("m"), out("first"), out("seed")}, folder_);
     EXPECT_EQ(other.exit_code, 2);
     EXPECT_THAT(other.standard_error, HasSubstr("trace.seed: 5 there, 1 here"));
-    // Another program or device: by the identity that it left.
+    // A shard of another program or device is refused by the identity that it left.
     for (const auto& [from, to] :
          {std::pair{"kernels_digest = \"", "kernels_digest = \"0"}, {"device = \"", "device = \"another "}}) {
         ASSERT_EQ(stack("second", {"--shard", "2/3", "--quiet"}).exit_code, 0);
@@ -168,7 +169,7 @@ TEST_F(Cluster, MergeNamesWhatIsMissingAndRefusesWhatDoesNotBelong) {
     const auto nothing = run_program({"merge", "nowhere"}, folder_);
     EXPECT_EQ(nothing.exit_code, 2);
     EXPECT_THAT(nothing.standard_error, HasSubstr("stack.toml"));
-    // A flipped bit of a shard's image.
+    // A flipped bit of a shard's image is found.
     ASSERT_EQ(stack("second", {"--shard", "2/3", "--quiet"}).exit_code, 0);
     const auto image = out("second") / "images/z_0001.tif";
     std::string bytes = read_file(image);
@@ -182,7 +183,7 @@ TEST_F(Cluster, MergeNamesWhatIsMissingAndRefusesWhatDoesNotBelong) {
     }
 }
 
-// A process of the program, for signals.
+// Starts the program in a process of its own, which takes signals.
 pid_t start(const Words& words, const fs::path& folder) {
     const pid_t child = fork();
     if (child == 0) {
@@ -203,7 +204,8 @@ pid_t start(const Words& words, const fs::path& folder) {
     return child;
 }
 
-// VKFV_EVERY_FAULT: a hundred kills. Shards of one folder, each on a device that is opened twice.
+// Shards of one folder are killed, each on a device that is opened twice: a hundred times with VKFV_EVERY_FAULT in the
+// environment, else five times.
 TEST_F(Cluster, KilledShardsEndInTheBytesOfOneRun) {
     const int kills = std::getenv("VKFV_EVERY_FAULT") != nullptr ? 100 : 5;
     ASSERT_EQ(stack("one", {"--quiet", "--device", "0"}).exit_code, 0);
@@ -237,7 +239,7 @@ TEST_F(Cluster, KilledShardsEndInTheBytesOfOneRun) {
     expect_same_results(out("one"), out("killed"));
 }
 
-// Until one of the files is there, a minute at most.
+// Waits until one of the files is there, a minute at most.
 bool appears(const std::vector<fs::path>& files) {
     const auto there = [&] {
         return std::ranges::any_of(files, [](const fs::path& file) { return fs::exists(file); });
@@ -249,7 +251,7 @@ bool appears(const std::vector<fs::path>& files) {
 }
 
 TEST_F(Cluster, AKilledExposureGoesOnFromItsCheckpoint) {
-    // Light for a second or more an image on two cores, fifty times what lies between two checkpoints.
+    // The rays take a second or more an image on two cores, fifty times the interval between two checkpoints.
     const auto often = [](const char* rays, Words words = {}) {
         words.insert(words.end(), {"--rays", rays, "--set", "output.checkpoint_s=0.02"});
         return words;
@@ -272,7 +274,7 @@ TEST_F(Cluster, AKilledExposureGoesOnFromItsCheckpoint) {
     ASSERT_EQ(stack("one", stack_often).exit_code, 0);
     expect_same_results(out("one"), out("killed"));
 
-    // A single image.
+    // A single image goes on from its checkpoint too.
     const Words image = often("3000000", {"image", "c.toml", "--z", "0.3", "--estimator", "backward"});
     const auto to = [&](const char* file) {
         Words words = image;
@@ -285,7 +287,7 @@ TEST_F(Cluster, AKilledExposureGoesOnFromItsCheckpoint) {
     kill(child, SIGKILL);
     waitpid(child, &status, 0);
     EXPECT_FALSE(fs::exists(folder_ / "killed.tif"));
-    // Another exposure does not take it up.
+    // Another exposure does not take the checkpoint up.
     Words other = to("killed.tif");
     other.insert(other.end(), {"--seed", "9"});
     EXPECT_THAT(run_program(other, folder_).standard_error, HasSubstr("a checkpoint of another exposure"));
@@ -331,7 +333,7 @@ TEST_F(Cluster, TheLogTellsOfEachImageInJson) {
         EXPECT_GT(image["detected_W"].get<double>(), 0);
     }
     EXPECT_EQ(events["image"].back()["done"], 5);
-    // What a command ends with, too.
+    // A command that fails ends its log with the error and the exit code.
     const auto failed = stack("out", {"--log-json", "--seed", "9"});
     EXPECT_EQ(failed.exit_code, 2);
     const auto last = failed.standard_error.rfind('{');
@@ -342,7 +344,7 @@ TEST_F(Cluster, TheLogTellsOfEachImageInJson) {
 }
 
 TEST_F(Cluster, AForecastTellsWhatTheStackThenTakes) {
-    // Of rays alone, whose noise is that of their number; waves spread it.
+    // Without diffraction the noise of an image is that of the number of its rays; waves would spread it over pixels.
     const Words settings = {"--set", "detector.pixels=64", "--rays", "2e6", "--set", "diffraction.model=none"};
     Words check = {"check", "c.toml", "--forecast", "--json", "--out", "f/out"};
     check.insert(check.end(), settings.begin(), settings.end());
@@ -365,7 +367,7 @@ TEST_F(Cluster, AForecastTellsWhatTheStackThenTakes) {
             light += event["detected_W"].get<double>() / 5 / (64 * 64);
         }
     }
-    // A machine at other work takes its time.
+    // A machine at other work may take four times as long as forecast.
     EXPECT_GT(forecast["seconds"].get<double>(), seconds / 4);
     EXPECT_LT(forecast["seconds"].get<double>(), seconds * 4);
     EXPECT_NEAR(forecast["detected_rays_per_pixel"].get<double>(), detected_rays, 0.05 * detected_rays);
@@ -385,7 +387,7 @@ TEST_F(Cluster, AForecastTellsWhatTheStackThenTakes) {
 }
 
 TEST_F(Cluster, WhatCannotFitOnTheDiskIsRefusedFirst) {
-    // Pixels of which 8001 images take more than there is.
+    // The detector has so many pixels that 8001 images take more space than there is.
     const auto free = static_cast<double>(fs::space(folder_).available);
     const int pixels = std::max(64, static_cast<int>(std::ceil(std::sqrt(1.1 * free / (8001 * sizeof(float))))));
     const auto result = stack("large", {"--set", "detector.pixels=" + std::to_string(pixels), "--set",

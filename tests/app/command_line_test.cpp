@@ -1,4 +1,4 @@
-// Commands by name and as options, and what is told of them: all of it from the same declarations.
+// Commands by name and as options, and all that is told of them, come from the same declarations.
 #include "app/commands.hpp"
 #include "app/program.hpp"
 #include "app/version.hpp"
@@ -17,7 +17,8 @@
 namespace vkfv::test {
 namespace {
 
-// Not before main(): the commands ask other rooms for their lists.
+// The commands are declared after main() has begun: they ask other rooms for their lists, which static objects must
+// not.
 class Declared : public testing::Environment {
     void SetUp() override { command_line::declare_commands(app::commands(), app::version_text); }
 };
@@ -131,7 +132,7 @@ TEST(CommandLine, AWordThatIsNoCommandIsRefusedWithTheNearest) {
     EXPECT_THAT(run_program({"check"}, folder).standard_error, HasSubstr("C.toml is required"));
 }
 
-// What a command needs, and a value of an option that its own check lets through.
+// The words that a command needs to be run at all.
 Words needed_by(const app::Command& command) {
     Words words = {command.name};
     for (const auto& operand : command.operands) {
@@ -152,7 +153,7 @@ std::string good_value(const app::Option& option) {
                                      : fmt::format("{}", std::max(1, option.range.first));
 }
 
-// In this process: there are hundreds.
+// The command line is read within this process, as there are hundreds of cases.
 std::string refusal_of(Words words) {
     words.insert(words.begin(), "vkfv");
     std::vector<char*> values;
@@ -350,7 +351,7 @@ TEST(List, NamesWhatAConfigurationTakes) {
     EXPECT_THAT(names_listed("scatter", folder), testing::Contains("henyey-greenstein"));
     EXPECT_THAT(run_program({"--list", "glasses"}, folder).standard_output,
                 testing::ContainsRegex("N-BK7 +nd = 1.51680.; SCHOTT"));
-    // Those that the reader of configurations names.
+    // The list must hold the names that the reader of configurations gives where it refuses another one.
     write_file(folder / "c.toml", replaced(small_configuration, "kind = \"step\"", "kind = \"none of them\""));
     const auto refusal = run_program({"check", "c.toml"}, folder).standard_error;
     std::string all;

@@ -1,4 +1,4 @@
-// vkfv --compare through the real program.
+// vkfv --compare, through the real program, finds the deviation of maps that differ by known waves, shifts and noise.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 #include "support/surface_files.hpp"
@@ -80,7 +80,7 @@ TEST_F(Compare, ReportsAShiftAndRemovesItOnRequestOnly) {
     // square of its weights' places: 1.6 % and 0.9 %, of 0.35 um each, beside the noise, whose
     // standard deviation over 14 375 points errs by 0.0002 um: five of these.
     EXPECT_NEAR(aligned["rms_deviation_um"], std::hypot(0.03, 0.0056, 0.0030), 0.001);
-    // Two sinusoids: Sq = 0.5 um, but for that and for parts of periods.
+    // Two sinusoids have an Sq of 0.5 um, except for the mean over 1 um and for parts of periods.
     EXPECT_NEAR(aligned["parameters"]["Sq_um"]["true"], 0.5, 0.02);
     EXPECT_NEAR(aligned["parameters"]["Sq_um"]["measured"], 0.5, 0.02);
     EXPECT_TRUE(aligned["parameters"]["Sq_um"]["standard_error"].is_null());
@@ -90,7 +90,7 @@ TEST_F(Compare, ReportsAShiftAndRemovesItOnRequestOnly) {
 
 TEST_F(Compare, TellsSystematicFromRandomOverRepetitions) {
     const auto together = report({"measured_0.tif", "measured_1.tif", "measured_2.tif", "measured_3.tif", "truth.tif"});
-    // 14 400 points, three degrees of freedom each.
+    // Each of 14 400 points has three degrees of freedom.
     EXPECT_NEAR(together["random_um"], 0.03, 5 * 0.03 / std::sqrt(2 * 3 * 14400.0));
     EXPECT_NEAR(together["systematic_um"], 0.074, 0.002);
     EXPECT_GT(together["parameters"]["Sa_um"]["standard_error"], 0);
@@ -117,7 +117,8 @@ TEST_F(Compare, WritesMapsAndTables) {
     EXPECT_GT(profile["measured"]["Rq_um"], profile["true"]["Rq_um"]); // it has noise
 }
 
-// measured = 0.8 true + 0.2 um: what regression tells, without a form that would take the offset off.
+// The measured heights are 0.8 of the true ones plus 0.2 um, which the regression must tell, without a form that would
+// take the offset off.
 TEST_F(Compare, TellsSlopeAndOffsetOfMeasuredOnTrueHeights) {
     HeightMap map = surface::read_height_map(folder / "truth.tif");
     for (double& z : map.height.values) {
@@ -180,7 +181,7 @@ TEST_F(Compare, IsOfTheSurfacesAsTreated) {
     EXPECT_NEAR(treated["rms_deviation_um"], surface::height_parameters(difference).sq / um, 1e-9);
     const HeightMap written = surface::read_height_map(folder / "treated/deviation.tif");
     EXPECT_NEAR(written.height(60, 60), difference.height(60, 60), 1e-9);
-    // The smoothed truth along the middle row, and the shift, which no filter changes.
+    // The profile along the middle row is that of the smoothed truth, and no filter changes the shift.
     EXPECT_LT(treated["profile"]["true"]["Rq_um"], plain["profile"]["true"]["Rq_um"]);
     EXPECT_EQ(treated["measured"][0]["lateral_shift"], plain["measured"][0]["lateral_shift"]);
     const auto text = run_program(

@@ -1,5 +1,5 @@
-// One mistake is told once, whatever else depends on it: every value of every example is damaged by itself, and every
-// key misspelt.
+// A mistake is told once, whatever else depends on it: every value of every example is damaged by itself, and every key
+// misspelt.
 #include "app/program.hpp"
 #include "configuration/configuration.hpp"
 
@@ -37,7 +37,7 @@ std::vector<InputProblem> problems_of(const std::vector<std::string>& lines, con
     return {};
 }
 
-// Where "key = value" on one line begins its value; none for other lines.
+// The place where the value of "key = value" on one line begins; none for other lines.
 std::optional<std::size_t> value_in(const std::string& line) {
     const auto equals = line.find(" = ");
     const bool whole =

@@ -1,4 +1,4 @@
-// Configurations in process: values, units, canonical text and identity.
+// Configurations are read in this process: their values, units, canonical text and identity.
 #include "app/program.hpp"
 #include "configuration/configuration.hpp"
 #include "configuration/key_documents.hpp"
@@ -68,7 +68,7 @@ TEST(Configuration, OverridesWin) {
 }
 
 TEST(Configuration, CanonicalTextReadsBackToItself) {
-    // 0.1 um, 0.7 um, 1/3: numbers whose conversion to mm and back would not be exact.
+    // Converted to mm and back, 0.1 um, 0.7 um and 1/3 would not be exact.
     const auto text = replaced(replaced(small_configuration, "z_step_um = 1.0", "z_step_um = 0.7"), "pitch_um = 1.0",
                                "pitch_um = 0.3333333333333333");
     const auto first = load("canonical", text);
@@ -76,7 +76,7 @@ TEST(Configuration, CanonicalTextReadsBackToItself) {
     EXPECT_EQ(first.canonical, second.canonical);
     EXPECT_EQ(first.identity, second.identity);
     EXPECT_EQ(first.scan->z_step, second.scan->z_step);
-    // As stack.toml in the output folder, it continues the stack there.
+    // The canonical text is kept as stack.toml in the output folder; read from there, it continues the stack there.
     EXPECT_EQ(second.output_directory, second.file.parent_path());
     // Defaults are written out.
     EXPECT_THAT(first.canonical, HasSubstr("max_bounces = 2\n"));
@@ -112,7 +112,7 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
     for (const auto& change : neutral) {
         EXPECT_EQ(load("identity", small_configuration, {change}).identity, reference) << change.key;
     }
-    // A blur comes after the trace, waves do not.
+    // A blur comes after the trace and changes no identity; waves do.
     const auto of_rays = load("identity", small_configuration, {{"diffraction.model", "\"none\"", ""}}).identity;
     EXPECT_NE(of_rays, reference);
     EXPECT_EQ(load("identity", small_configuration, {{"diffraction.model", "\"airy\"", ""}}).identity, of_rays);
@@ -143,8 +143,6 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
     }
 }
 
-// Every key of [stage] and [camera]: another value makes other images, but for those that are declared to influence
-// none.
 // A preset read out with fewer bits ends at the same charge.
 TEST(Configuration, PresetsOfOtherBitsKeepTheirRange) {
     const auto text = replaced(small_configuration, "[output]\n", "[camera]\npreset = \"IMX900\"\n[output]\n");
@@ -168,6 +166,8 @@ TEST(Configuration, TheCamerasTimeIsTheStages) {
     EXPECT_DOUBLE_EQ(load("stack", by_the_stack).stage->exposure_time, 0);
 }
 
+// Another value of any key of [stage] and [camera] makes other images, except for keys that are declared to influence
+// none.
 TEST(Configuration, IdentityHoldsWhatStageAndCameraDoToImages) {
     const auto stage =
         replaced(small_configuration, "[output]\n",
@@ -340,7 +340,7 @@ TEST(Configuration, SeveralSourcesAreRead) {
     EXPECT_NEAR(coloured.spectrum.reference_um, (3 * 0.52 + 2 * 0.5876) / 5, 1e-12);
 }
 
-// One of several is changed by its number.
+// An override changes one of several sources by its number.
 TEST(Configuration, OverridesReachOneOfSeveralSources) {
     const auto folder = fresh_folder("overridden_sources");
     write_file(folder / "c.toml", replaced(small_configuration, "[source]\n", "[[source]]\n"));
@@ -385,14 +385,15 @@ TEST(Configuration, RingLightsAimAtTheWholeSpecimen) {
     const std::vector<double> heights = {0};
     const double lit = std::hypot(2.0, 4.0);
     const double reach = lit + 1; // and half the band
-    // Of heights there is the rounding alone that the specimen's top is raised by.
+    // The surface is flat: the 1e-9 leave room for the rounding alone that the specimen's top is raised by.
     EXPECT_NEAR(assemble_instrument(configuration, specimen, heights).constants.emission_sine,
                 reach / std::hypot(reach, 12 - lit), 1e-9);
-    // A focal height of 1 mm widens it.
+    // A focal height of 1 mm widens the aim.
     const std::vector<double> raised = {1.0};
     EXPECT_GT(assemble_instrument(configuration, specimen, raised).constants.emission_sine,
               reach / std::hypot(reach, 12 - lit) + 1e-3);
-    // Without a specimen the detector's field, with half of it more around, and 0.2 mm above and below the focus.
+    // Without a specimen the aim holds the detector's field, with half of it more around, and 0.2 mm above and below
+    // the focus.
     const auto alone = assemble_instrument(configuration);
     const double field = std::hypot(1.5 * std::sqrt(0.5) * 0.16 / std::abs(alone.first_order.magnification), 0.2);
     EXPECT_NEAR(alone.constants.emission_sine, (field + 1) / std::hypot(field + 1, 12 - field), 1e-15);
@@ -504,7 +505,7 @@ TEST(Configuration, LensesStopsAndPlacementsAreRead) {
     EXPECT_EQ(ideal.objective.surfaces[1].role, optics::PrescribedSurface::Role::aperture_stop);
     ASSERT_TRUE(ideal.immersion);
     EXPECT_NEAR(ideal.immersion->index(0.5876), 1.333, 1e-3); // water's, to the digits that need no temperature
-    // Abbe's sine condition: the cone is the one asked for.
+    // By Abbe's sine condition the cone is the one asked for.
     EXPECT_NEAR(optics::assemble(ideal).first_order.numerical_aperture, 1.2, 1e-3);
     const auto tube_lens = described("prescription = \"200mm\"", "kind = \"ideal\"\nfocal_length_mm = 160\n");
     ASSERT_EQ(tube_lens.tube_lens.surfaces.size(), 1u);
@@ -634,7 +635,8 @@ TEST(Configuration, GeometryDigestSeesOneBitOfOneHeight) {
     EXPECT_NE(geometry_digest(one), geometry_digest(other));
 }
 
-// What is not in the working directory and begins with assets/ came with the program.
+// A path that begins with assets/ and is not in the working directory names a file that came with the program; its
+// results still go where they are asked for.
 TEST(Configuration, ResultsOfAnInstalledExampleGoWhereTheyAreAskedFor) {
     const auto before = std::filesystem::current_path();
     const auto folder = fresh_folder("installed_example");

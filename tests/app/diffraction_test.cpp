@@ -41,14 +41,14 @@ TEST(Diffraction, BlursBesideTheTracedImage) {
     EXPECT_EQ(read_file(folder / "a.tif"), read_file(folder / "b.tif"));
     const auto traced = images::read_image(folder / "b.tif");
     const auto blurred = images::read_image(folder / "b_diffracted.tif");
-    // Rounding to float of each pixel.
+    // Each pixel is rounded to float.
     EXPECT_NEAR(sum(blurred) / sum(traced), 1, 1e-6);
     EXPECT_LT(spread(blurred), 0.9 * spread(traced));
 
     // The older name of the key says the same.
     run("d.tif", {"--set", "diffraction.model=airy"});
     EXPECT_EQ(read_file(folder / "d_diffracted.tif"), read_file(folder / "b_diffracted.tif"));
-    // Waves are the default, and no blur beside the image.
+    // By default waves make the image, and no blur stands beside it.
     run("w.tif", {});
     EXPECT_FALSE(std::filesystem::exists(folder / "w_diffracted.tif"));
     const auto waves = images::read_image(folder / "w.tif");

@@ -1,4 +1,4 @@
-// What a script sees: codes, and words that say what to do.
+// A script sees the exit code of a run, and a person the words on standard error that say what to do.
 #include "app/program.hpp"
 #include "core/files/result_folder.hpp"
 
@@ -41,7 +41,7 @@ TEST(ExitCode, OfAPlaceThatCannotBeWrittenToIsFour) {
     const auto folder = fresh_folder("unwritable");
     write_file(folder / "c.toml", small_configuration);
     write_file(folder / "file", "");
-    // Below a file, as anywhere that the system refuses; root may write into read-only folders.
+    // A path below a file cannot be made, as anywhere that the system refuses; root may write into read-only folders.
     for (const auto& command : {std::vector<std::string>{"--stack", "c.toml", "--out", "file/out"},
                                 {"--image", "c.toml", "--z", "0", "--out", "file/a.tif"},
                                 {"--layout", "c.toml", "file/a.svg"}}) {
@@ -89,7 +89,7 @@ TEST(ExitCode, OfAnInterruptedStackIsTheSignals) {
     }
 }
 
-// Why a device was chosen is no part of what a stack is.
+// The reason for which a device was chosen is no part of a stack's identity.
 TEST(Identity, IsTheDeviceAndNotTheReasonForIt) {
     const auto folder = fresh_folder("identity");
     write_file(folder / "c.toml", small_configuration);
@@ -122,7 +122,7 @@ TEST(Results, TellTheRaysOfTheLedger) {
         run_program({"--stack", "c.toml", "--quiet", "--estimator", "backward", "--rays", "5000"}, folder).exit_code,
         0);
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
-    // 8 x 8 pixels, 79 paths each, rounded up to two lattices of 64.
+    // Each of 8 x 8 pixels has 79 paths, rounded up to two lattices of 64.
     EXPECT_EQ(results["rays_per_image"], 8192);
     EXPECT_THAT(read_file(folder / "out/ledger.csv"), HasSubstr("\n0,-2,8192,"));
     for (const char* key : {"evaluation_seconds", "trace_seconds", "rays_per_second", "images_traced"}) {

@@ -1,4 +1,4 @@
-// What is seen from +z with x to the right has y up, in every file.
+// Seen from +z with x to the right, y points up in every file that is written.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 #include "support/surface_files.hpp"
@@ -12,8 +12,8 @@ namespace vkfv::test {
 
 static const std::filesystem::path source_folder = VKFV_SOURCE_DIR;
 
-// The letter F of assets/specimens, raised: what a viewer shows (the file's first row on top) has its stem on the left,
-// its bars to the right, the upper one at the top, in the topography's truth for each of its makers.
+// The letter F of assets/specimens is raised: shown by a viewer (the file's first row on top) it has its stem on the
+// left and its bars to the right, the upper one at the top, in the topography's truth for each of its makers.
 TEST(Handedness, ALetterReadsCorrectlyFromEveryKindOfFile) {
     for (const char* name : {"image_letter", "stl_letter", "gltf_letter", "surface_letter", "points_letter"}) {
         const auto folder = fresh_folder(std::string("hand_") + name);
@@ -43,8 +43,9 @@ TEST(Handedness, ALetterReadsCorrectlyFromEveryKindOfFile) {
             highest = std::max(highest, h);
             lowest = std::min(lowest, h);
         }
-        // Share of raised points in a part of the letter's bounding box, u to the right and v up, both 0 to 1. A row or
-        // a column belongs to the letter from a tenth of the side on: single points on the flanks are of neither.
+        // The share of raised points in a part of the letter's bounding box, u to the right and v up, both 0 to 1. A
+        // row or a column belongs to the letter from a tenth of the side on: single points on the flanks are of
+        // neither.
         int left = side, right = 0, bottom = side, top = 0;
         const auto raised = [&](int i, int j) { return truth.height(i, j) > 0.5 * (highest + lowest); };
         for (int k = 0; k < side; ++k) {

@@ -1,4 +1,4 @@
-// The heights that a traced stack gives are the specimen's: sign, place and size.
+// The heights that a traced stack gives are the specimen's in sign, place and size.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 #include "support/surface_files.hpp"
@@ -36,8 +36,9 @@ double correlation(const surface::HeightMap& measured, const surface::HeightMap&
 
 } // namespace
 
-// The demo with an eighth of its rays and every other image. Its full form reaches 0.95 before long waves are removed;
-// fewer rays and coarser steps are given a loss of 0.15. The wrong twins are the truth mirrored.
+// The demo is traced with an eighth of its rays and every other image. Its full form reaches a correlation of 0.95
+// before long waves are removed; fewer rays and coarser steps are given a loss of 0.15. The wrong twins are the truth
+// mirrored.
 TEST(Heights, OfTheDemoAreTheSpecimens) {
     const auto folder = fresh_folder("heights");
     const auto demo = (std::filesystem::path(VKFV_SOURCE_DIR) / "assets/stacks/demo.toml").string();
@@ -52,8 +53,8 @@ TEST(Heights, OfTheDemoAreTheSpecimens) {
     EXPECT_LT(correlation(measured, truth, true, true), 0.5);
 }
 
-// The 10x over a field of 1 mm: a level surface's heights fall from the axis to the corners. Their uncertainty counts
-// it, until a flat (here the stack's own heights) takes it off.
+// With the 10x over a field of 1 mm, the heights of a level surface fall from the axis to the corners. Their
+// uncertainty counts this curvature, until a flat (here the stack's own heights) takes it off.
 TEST(Heights, OfACurvedFieldAreAsUncertainAsItIs) {
     const auto folder = fresh_folder("curved_field");
     write_file(folder / "c.toml", R"(
@@ -126,9 +127,9 @@ window_px = 5
         }
         return sum / points;
     };
-    // How far heights follow it depends on the texture. They scatter by 3 um there, and two windows are independent: 2
-    // um. The mean of r^2 over a square is a third of its corner's, and these places have 0.8 of the corner's distance:
-    // 0.64 - 0.33 of it is what the uncertainty holds there.
+    // The texture decides how far heights follow the curvature. They scatter by 3 um there, and two windows are
+    // independent: 2 um. The mean of r^2 over a square is a third of its corner's, and these places have 0.8 of the
+    // corner's distance: the uncertainty holds 0.64 - 0.33 of the curvature there.
     for (const int place : {4, 36}) {
         EXPECT_LT(mean(heights, place, place), mean(heights, 20, 20) - 0.5 * left);
         EXPECT_GT(mean(heights, place, 40 - place), mean(heights, 20, 20) - left - 2);

@@ -1,5 +1,5 @@
-// Specimens that no careful hand wrote, through the real program: what would fill the memory or run for minutes is
-// refused before anything is made, and light that goes astray is told of.
+// Specimens that no careful hand wrote go through the real program: one that would fill the memory or run for minutes
+// is refused before anything is made, and light that goes astray is told of.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -98,7 +98,7 @@ TEST(HostileSpecimen, SurfacesWithoutFacetsNeedNoPitch) {
 }
 
 TEST(HostileSpecimen, LightThatGoesAstrayIsToldOf) {
-    // A square between these, along x and y.
+    // The part is a square from `low` to `high` along x and y.
     const auto run = [&](const std::string& low, const std::string& high, const std::string& keys,
                          const std::vector<std::string>& arguments) {
         const auto folder = fresh_folder("light");
@@ -116,7 +116,7 @@ TEST(HostileSpecimen, LightThatGoesAstrayIsToldOf) {
     EXPECT_THAT(unseen.standard_output,
                 HasSubstr("The detector does not see the specimen: it is 1000 x 1000 um across, from x = "
                           "9000 and y = 9000 um on. Correct specimen.unit"));
-    // Centred it fills the field, but not in another unit.
+    // Centred, the square fills the field, but not in another unit.
     EXPECT_THAT(run("9", "10", "", check).standard_output, Not(HasSubstr("of the field of view: it is")));
     EXPECT_THAT(run("9", "15", "unit = \"um\"\n", check).standard_output,
                 AllOf(HasSubstr("The specimen fills "), HasSubstr("of the field of view: it is 6 x 6 um across")));

@@ -1,4 +1,4 @@
-// vkfv --import through the real program.
+// vkfv --import, through the real program, keeps closed-form focal lengths.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -24,14 +24,14 @@ nlohmann::json report_of(const std::vector<std::string>& more, const std::filesy
     return nlohmann::json::parse(result.standard_output);
 }
 
-// Schott's published coefficients of N-BK7.
+// The index of N-BK7 by Schott's published coefficients.
 double index_of_n_bk7(double um) {
     const double x2 = um * um;
     return std::sqrt(1 + 1.03961212 * x2 / (x2 - 0.00600069867) + 0.231792344 * x2 / (x2 - 0.0200179144) +
                      1.01046945 * x2 / (x2 - 103.560653));
 }
 
-// The lensmaker's equation of a thick lens in air.
+// The truth is the lensmaker's equation of a thick lens in air.
 TEST(Import, ASingletHasItsClosedFormFocalLengths) {
     const auto folder = fresh_folder("import_singlet");
     const auto report = report_of({lens_path("singlet.zmx")}, folder);
@@ -43,7 +43,7 @@ TEST(Import, ASingletHasItsClosedFormFocalLengths) {
     EXPECT_EQ(report["primary_wavelength_um"], 0.5875618);
     EXPECT_NEAR(report["efl_mm"].get<double>(), 1 / power, 1e-11); // rounding of some 40 mm, a dozen times
     EXPECT_NEAR(report["bfl_mm"].get<double>(), back, 1e-11);
-    // The wrong twin: another primary wavelength.
+    // The wrong twin has another primary wavelength.
     auto text = replaced(read_file(lens_path("singlet.zmx")), "PWAV 2", "PWAV 1");
     write_file(folder / "blue.zmx", text);
     EXPECT_GT(std::abs(report_of({"blue.zmx"}, folder)["efl_mm"].get<double>() - 1 / power), 0.1);
@@ -69,7 +69,8 @@ TEST(Import, WritesAPrescriptionThatAConfigurationNames) {
     ASSERT_EQ(checked.exit_code, 0) << checked.standard_error;
     const double tube = nlohmann::json::parse(checked.standard_output)["efl_tube_lens_mm"];
     const double imported = report_of({lens_path("doublet.zmx")}, folder)["efl_mm"];
-    // 0.5876 um instead of 0.5875618 um; the dispersion of the glasses is some 1e-1 of the power per um.
+    // The imported lens is for 0.5876 um instead of 0.5875618 um; the dispersion of the glasses is some 1e-1 of the
+    // power per um.
     EXPECT_NEAR(tube, imported, 1e-5 * imported);
 }
 

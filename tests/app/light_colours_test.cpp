@@ -1,4 +1,4 @@
-// Light as it is sold: every shipped microscope with lines from blue to red, with a white diode, and with an
+// Every shipped microscope works with light as it is sold: with lines from blue to red, with a white diode, and with an
 // illuminator that needs no prescription.
 #include "app/program.hpp"
 

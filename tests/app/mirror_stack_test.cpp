@@ -15,7 +15,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// A mirror with waves of 50 nm: below lambda / (4 pi) = 44 nm of standard deviation.
+// The specimen is a mirror with waves of 50 nm amplitude: below lambda / (4 pi) = 44 nm of standard deviation.
 constexpr const char* mirror_stack = R"([source]
 radius_mm = 1.3
 wavelength_um = 0.55
@@ -63,7 +63,7 @@ cells = 8
 parts_per_pixel = 2
 )";
 
-// lambda / NA^2 in um.
+// The depth of field lambda / NA^2 in um.
 constexpr double depth_of_field_um = 0.55 / (0.4 * 0.4);
 
 void expect_honest_heights(const nlohmann::json& results) {

@@ -1,4 +1,4 @@
-// Stack folders that 1.0.0 made: later programs open, verify, evaluate and resume them, or refuse them by name.
+// Later programs open, verify, evaluate and resume the stack folders that 1.0.0 made, or refuse them by name.
 // tests/data/stacks_1.0.0 has stack.toml, which both folders were traced from on the host, so that no device of a
 // machine is part of what they are; finished, without its report.html of 1.4 MB; and begun, which SIGINT ended.
 #include "app/program.hpp"
@@ -25,7 +25,7 @@ constexpr int images = 11, images_of_begun = 3;
 // standard uncertainty of 0.18 um.
 constexpr double same_height = 1e-6; // mm
 
-// stack.toml and both folders, where they may be changed.
+// Copies stack.toml and both folders to where they may be changed.
 fs::path copied_stacks() {
     auto folder = fresh_folder("stacks");
     fs::copy(fs::path(VKFV_SOURCE_DIR) / "tests/data/stacks_1.0.0", folder,

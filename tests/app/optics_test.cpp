@@ -1,4 +1,5 @@
-// vkfv optics through the real program.
+// vkfv optics, through the real program, writes wavefronts, transfer and point spread that closed forms and other
+// programs know.
 #include "app/program.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -21,7 +22,7 @@ using testing::StartsWith;
 
 const std::string stacks = VKFV_SOURCE_DIR "/assets/stacks/";
 
-// The rows of a table by their first columns, and the numbers behind.
+// The numbers of a table's rows, by the text of the columns before them.
 using Rows = std::map<std::string, std::vector<double>>;
 Rows rows_of(const std::filesystem::path& file, int key_columns) {
     std::istringstream lines(read_file(file));
@@ -41,7 +42,7 @@ Rows rows_of(const std::filesystem::path& file, int key_columns) {
     return rows;
 }
 
-// An ideal lens of NA 0.28, a quarter of a wave out of focus at the rim: the scalar Debye integral's figures.
+// An ideal lens of NA 0.28, a quarter of a wave out of focus at the rim, has the figures of the scalar Debye integral.
 TEST(OpticsCommand, IntegratesThePupilOfAnIdealLens) {
     const auto folder = fresh_folder("optics_ideal");
     constexpr double aperture = 0.28, wavelength_um = 0.55;
@@ -57,7 +58,7 @@ TEST(OpticsCommand, IntegratesThePupilOfAnIdealLens) {
     EXPECT_NEAR(axis["strehl"].get<double>(), 1, 1e-6);
     EXPECT_NEAR(axis["through_focus"].front()["strehl"].get<double>(), 0.803, 1e-3);
     EXPECT_NEAR(axis["through_focus"].back()["strehl"].get<double>(), 0.803, 1e-3);
-    // Zeros of J1 over 2 pi, and the light within.
+    // The dark rings are the zeros of J1 over 2 pi, and the shares of light within them are Rayleigh's.
     const double unit = wavelength_um / aperture;
     const std::array radii = {0.609835, 1.116565, 1.619157};
     const std::array light = {0.8378, 0.9099, 0.9376};
@@ -77,7 +78,7 @@ TEST(OpticsCommand, IntegratesThePupilOfAnIdealLens) {
     EXPECT_NEAR(contrast("radial", 0.75), 0.121, 1e-3);
 }
 
-// tests/references/wavefront_reference.py, which shares no code: the 10x at its best focus.
+// tests/references/wavefront_reference.py, which shares no code, gives the coefficients of the 10x at its best focus.
 TEST(OpticsCommand, TellsAShippedObjectivesWavefront) {
     const auto folder = fresh_folder("optics_demo");
     const auto result = run_program({"optics", stacks + "demo.toml", "--out", "out"}, folder);
@@ -98,7 +99,7 @@ TEST(OpticsCommand, TellsAShippedObjectivesWavefront) {
     EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 0);
 }
 
-// Coefficients are means over the disc: piston of W, tilts of W 2 x and W 2 y.
+// Zernike coefficients are means over the disc: the piston of W, the tilts of W 2 x and W 2 y.
 TEST(OpticsCommand, TellsOneWavefrontInBothTables) {
     const auto folder = fresh_folder("optics_tables");
     const auto result = run_program({"optics", stacks + "bench_paper_chain.toml", "--out", "out"}, folder);
@@ -132,8 +133,8 @@ TEST(OpticsCommand, TellsOneWavefrontInBothTables) {
         EXPECT_NEAR(zernike.at(point + ",3,tilt y").back(), sums.tilt_y / sums.rim / sums.count, 3e-3) << point;
     }
     EXPECT_NEAR(std::sqrt(points["corner"].square / points["corner"].count), 0.1995, 2e-3);
-    // What vkfv check says of the same wavefronts is the root of the table's mean square: the map's 129 x 129 points
-    // against a quadrature.
+    // vkfv check reports the root of the mean square of the same wavefronts: the map's 129 x 129 points against a
+    // quadrature.
     const auto check = run_program({"check", stacks + "bench_paper_chain.toml", "--json"}, folder);
     ASSERT_EQ(check.exit_code, 0) << check.standard_error;
     const auto told = nlohmann::json::parse(check.standard_output);

@@ -1,4 +1,4 @@
-// The reference paper's experiments in small: assets/stacks/paper_*_small.toml.
+// The reference paper's experiments hold in small: assets/stacks/paper_*_small.toml.
 #include "app/program.hpp"
 
 #include <gtest/gtest.h>
@@ -43,8 +43,8 @@ TEST(Paper, LogoUnderFullFactorialVariation) {
     ASSERT_EQ(ratio.size(), 3u);
     for (const auto& [g, of_rays] : ratio) {
         ASSERT_EQ(of_rays.size(), 4u);
-        // A hundred times the rays, ten times the ratio. n detected rays leave it a relative error of 1 / (2 sqrt(n));
-        // at N = 1e5 at least 3500 are detected: five of them are 4 %.
+        // A hundred times the rays give ten times the ratio of signal to noise. n detected rays leave it a relative
+        // error of 1 / (2 sqrt(n)); at N = 1e5 at least 3500 are detected: five of these errors are 4 %.
         EXPECT_NEAR(of_rays.at("1e7") / of_rays.at("1e5"), 10, 0.42) << g;
     }
     // A sharper lobe sends more into the pupil; a level mirror would send all.
@@ -56,7 +56,7 @@ TEST(Paper, LogoUnderFullFactorialVariation) {
     EXPECT_EQ(sheet.select_nodes("//image").size(), 12u);
 }
 
-// With half of its light and every other image. The wrong twin is the stack in a random order.
+// The stack has half of its light and every other image. The wrong twin is the stack in a random order.
 TEST(Paper, TopographyOfTypeAir) {
     const auto folder = fresh_folder("air");
     const auto result = run_program({"--stack", stack("paper_air_small.toml"), "--out", "out", "--quiet", "--rays",

@@ -1,4 +1,4 @@
-// Stacks of displaced instruments through the real program: measured heights lie where the truth has them.
+// In stacks of displaced instruments, through the real program, measured heights lie where the truth has them.
 #include "app/program.hpp"
 #include "support/surface_files.hpp"
 
@@ -15,7 +15,7 @@
 namespace vkfv::test {
 namespace {
 
-// NA 0.45, pixels of 1 um in the object, texture of a micrometre, 32 paths a pixel.
+// The instrument has NA 0.45, pixels of 1 um in the object, a texture of a micrometre, and 32 paths a pixel.
 const std::string microscope = R"(
 [source]
 radius_mm = 1.6
@@ -110,14 +110,14 @@ glm::dvec2 aside(const Measured& stack) {
     return {-solved(4) / solved(3), -solved(5) / solved(3)};
 }
 
-// Pixels. The noise of so few rays scatters what aside() finds by 0.1 to 0.2; the mapping itself is held to a hundredth
-// in tests/optics.
+// The largest distance in pixels. The noise of so few rays scatters what aside() finds by 0.1 to 0.2; the mapping
+// itself is held to a hundredth in tests/optics.
 constexpr double most_aside = 0.4;
 
 const std::string waves = "kind = \"cross-sinusoid\"\namplitude_um = 1.5\nperiod_um = 24.0";
 
-// shift: of the pixels on the specimen, um. It is up to half a wave, so heights against the truth of other places would
-// not correlate.
+// `shift` is that of the pixels on the specimen in um. It is up to half a wave, so heights would not correlate with the
+// truth of other places.
 void expect_registered(const std::string& name, const std::vector<std::string>& settings, glm::dvec2 shift) {
     const auto stack = measured(name, waves, settings);
     EXPECT_LT(glm::length(aside(stack)), most_aside) << name;
@@ -126,7 +126,7 @@ void expect_registered(const std::string& name, const std::vector<std::string>& 
     EXPECT_NEAR(mapping.at("shift_x_um"), shift.x, 0.02) << name;
     EXPECT_NEAR(mapping.at("shift_y_um"), shift.y, 0.02) << name;
     EXPECT_LT(mapping.at("interpolation_error_um"), 0.001) << name;
-    // The middle of the maps.
+    // The maps' middle lies at the shift that the results tell.
     const auto& map = stack.truth;
     EXPECT_NEAR(1e3 * 0.5 * (map.x(0) + map.x(map.columns() - 1)), mapping.at("shift_x_um"), 1e-3) << name;
     EXPECT_NEAR(1e3 * 0.5 * (map.y(0) + map.y(map.rows() - 1)), mapping.at("shift_y_um"), 1e-3) << name;
@@ -136,7 +136,7 @@ TEST(PixelPlaces, OfACentredInstrument) {
     expect_registered("centred", {}, {0, 0});
 }
 
-// An image of 20 times, turned by half a turn.
+// The image is 20 times as large and turned by half a turn.
 TEST(PixelPlaces, OfADisplacedDetector) {
     expect_registered("detector", {"detector.decentre_x_mm=0.24", "detector.decentre_y_mm=-0.1"}, {-12, 5});
 }
@@ -145,7 +145,7 @@ TEST(PixelPlaces, OfADisplacedObjective) {
     expect_registered("objective", {"objective.decentre_x_mm=-0.01", "objective.decentre_y_mm=0.012"}, {-10, 12});
 }
 
-// 0.2 um from image to image, so that what is in focus in the middle of the scan lies 1 um aside.
+// The specimen moves by 0.2 um from image to image, so that points in focus in the middle of the scan lie 1 um aside.
 TEST(PixelPlaces, OfASpecimenThatDrifts) {
     const auto stack = measured("drift", waves, {"stage.lateral_drift_um_per_s=[0.4, 0.0]", "stage.interval_s=0.5"});
     EXPECT_LT(glm::length(aside(stack)), most_aside);
@@ -153,7 +153,7 @@ TEST(PixelPlaces, OfASpecimenThatDrifts) {
     EXPECT_NEAR(stack.results.at("mapping").at("shift_x_um"), -1, 0.1);
 }
 
-// The regions of a step are where it is seen, and its true height is that of the specimen.
+// The regions of a step lie where it is seen, and its true height is that of the specimen.
 TEST(PixelPlaces, TakeTheRegionsOfAStandardAlong) {
     const auto stack = measured("step", "kind = \"step\"\nheight_um = 4.0",
                                 {"detector.decentre_x_mm=0.2", "topography.form=\"truth\""});

@@ -1,5 +1,5 @@
-// Faults that `vkfv check` must find: a table of configurations with one fault each, by the code of its warning, and
-// what the warning says works must work. An objective turned round is in tests/lenses/lens_files_test.py.
+// `vkfv check` must find the fault of each configuration of a table, by the code of its warning, and the remedy that
+// the warning names must work. An objective turned round is in tests/lenses/lens_files_test.py.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -206,7 +206,7 @@ INSTANTIATE_TEST_SUITE_P(
                      false}),
     [](const auto& info) { return std::string(info.param.name); });
 
-// The wrong twin of all of them.
+// The wrong twin of all of them is the sound configuration.
 TEST(PlantedFaults, ASoundConfigurationHasNoWarning) {
     const auto folder = fresh_folder("planted_none");
     const auto report = checked(sound_configuration, {}, folder);

@@ -1,4 +1,4 @@
-// --trace-rays against rays of another program (tests/data/rays), through the whole command: CSV in, CSV out.
+// --trace-rays agrees with rays of another program (tests/data/rays) through the whole command: CSV in, CSV out.
 #include "app/program.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,8 @@ std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
     return rows;
 }
 
-// Greatest differences to the reference, and how many rays one calls vignetted and the other not.
+// Greatest differences from the reference, and the number of rays that one program calls vignetted and the other does
+// not.
 struct Differences {
     double position = 0;  // mm
     double direction = 0; // of a cosine
@@ -77,8 +78,8 @@ Differences compare_with_reference(const Scope& scope, const std::vector<std::st
 
 class ReferenceRays : public testing::TestWithParam<Scope> {};
 
-// What two double programs that order their sums differently may differ by after some
-// 350 mm of path and thirty surfaces, with a margin of a thousand.
+// Two programs in double that order their sums differently may differ by rounding after some 350 mm of path and thirty
+// surfaces; the limits leave a margin of a thousand.
 TEST_P(ReferenceRays, AgreeInDouble) {
     const auto found = compare_with_reference(GetParam(), {});
     EXPECT_GT(found.rays, 1900);

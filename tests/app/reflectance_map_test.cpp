@@ -1,4 +1,4 @@
-// [specimen.reflectance] and [illumination.field] as they are read, and flats that focus is seen on by them alone.
+// [specimen.reflectance] and [illumination.field] are read, and focus is seen on flats by them alone.
 #include "app/program.hpp"
 #include "configuration/configuration.hpp"
 #include "core/mathematics/units.hpp"
@@ -53,7 +53,7 @@ TEST(ReflectanceMap, IsReadAndWrittenOut) {
         EXPECT_EQ(again.identity, configuration.identity);
     }
     EXPECT_NE(with("kind = \"star\"\ncycles = 35\n").identity, star.identity);
-    // A file counts by its bytes, not by its path: GeometryDigest.
+    // A file counts by its bytes, not by its path (GeometryDigest).
     EXPECT_EQ(with("kind = \"image\"\nfile = \"other.png\"\npitch_um = 0.5\n").identity, image.identity);
 }
 
@@ -101,7 +101,8 @@ TEST(LightField, IsReadAndWrittenOut) {
     EXPECT_NE(grating.identity, even.identity);
 }
 
-// A mirror-like flat under a pattern that the illumination projects. Without it, the wrong twin, nothing is seen.
+// A mirror-like flat is measured under a pattern that the illumination projects. Without it, the wrong twin, nothing is
+// seen.
 TEST(LightField, AMirrorIsMeasuredFlatByAProjectedPattern) {
     const auto folder = fresh_folder("smooth_flat");
     const auto example = (std::filesystem::path(VKFV_SOURCE_DIR) / "assets/stacks/projected_pattern.toml").string();

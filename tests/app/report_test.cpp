@@ -1,4 +1,5 @@
-// report.html in a browser: tests/acceptance/check_report moves, drags and plays, and compares with the files beside.
+// A browser shows report.html: tests/acceptance/check_report moves, drags and plays, and compares with the files
+// beside.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +18,7 @@ bool has_chromium_package() {
     return read_file("/etc/os-release").find("\nID=ubuntu") == std::string::npos;
 }
 
-// What does not hold, if anything; none: there is no browser, and none to be installed.
+// The checks of a report that do not hold, as text; none if there is no browser and none has to be installed.
 std::optional<std::string> failures_of(const std::filesystem::path& results) {
     const auto told = results.parent_path() / "checks.txt";
     const std::string command = "python3 " VKFV_SOURCE_DIR "/tests/acceptance/check_report --seconds 30 '" +
@@ -46,7 +47,7 @@ TEST(Report, OfAStackWorksInABrowser) {
     EXPECT_EQ(*failures, "");
 }
 
-// Along the axis numbers so wide that not each of its ticks can have one.
+// The numbers along the axis are so wide that not each of its ticks can have one.
 TEST(Report, OfASweepWorksInABrowser) {
     const auto folder = fresh_folder("sweep_report");
     write_file(folder / "c.toml", small_configuration +

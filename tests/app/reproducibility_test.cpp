@@ -1,4 +1,4 @@
-// The same bits, however a stack came about; and the same image by either traversal.
+// A stack has the same bits however it came about, and an image is the same by either traversal.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 
@@ -48,8 +48,8 @@ std::map<std::string, std::string> bytes_of(const std::filesystem::path& folder)
     return bytes;
 }
 
-// The same of stacks in folders of other names, which stand on their pictures, and of other batches, which their
-// configuration tells.
+// The bytes of all files that name neither their folder, as pictures and reports do, nor the batch, as the
+// configuration does, and of which no checksum depends on those.
 std::map<std::string, std::string> bytes_but_names(const std::filesystem::path& folder) {
     auto bytes = bytes_of(folder);
     for (const char* name : {"topography.svg", "report.html", "stack.toml", ".stack.toml", "checksums.sha256"}) {
@@ -67,7 +67,7 @@ std::size_t images_in(const std::filesystem::path& folder) {
     return count;
 }
 
-// Starts the program and kills it with SIGKILL once `images` are there; whether it was still running then.
+// Starts the program and kills it with SIGKILL once `images` are there; returns whether it was still running then.
 bool run_and_kill(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                   const std::filesystem::path& stack, std::size_t images) {
     const pid_t child = fork();
@@ -135,8 +135,8 @@ TEST(Reproducibility, EveryRowOfTheLedgerCloses) {
     EXPECT_EQ(rows, 9);
 }
 
-// The demo by every traversal: the same paths meet the same facets, so the images differ only where a
-// path's fate hangs on the last bit, far below their own noise.
+// By every traversal the demo's paths meet the same facets, so the images differ only where a path's fate hangs on the
+// last bit, far below their own noise.
 TEST(Reproducibility, TheDemoIsTheSameByEveryTraversal) {
     const auto folder = fresh_folder("traversals");
     const auto image = [&](const std::string& name, const std::vector<std::string>& further) {

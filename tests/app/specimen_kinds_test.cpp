@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A value of the key as TOML; empty: of a file in place of which there are other keys.
+// A value of the key as TOML; empty for a file in place of which there are other keys.
 std::string value_of(const Key& key) {
     if (!key.example.empty()) {
         return key.example;
@@ -116,7 +116,8 @@ TEST(SpecimenKinds, SayWhatTheirKeysAreFor) {
     EXPECT_EQ((*specimen_key_tables().front()).kinds().size(), specimen::kinds().size());
 }
 
-// Whatever is in assets/specimens: as if its keys stood in the configuration, and some of them may.
+// Every file in assets/specimens is read as if its keys stood in the configuration, and some of them may stand there
+// too.
 TEST(Standards, AreReadAsTheirKeysAreAndLeaveNoNameBehind) {
     int found = 0;
     for (const auto& entry : std::filesystem::directory_iterator(VKFV_SOURCE_DIR "/assets/specimens")) {

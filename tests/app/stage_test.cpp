@@ -1,5 +1,5 @@
-// A stack of a real stage and a camera through the real program: the same bytes however it was taken, and another
-// stack where a key of theirs is another.
+// A stack of a real stage and a camera, through the real program, has the same bytes however it was taken, and is
+// another stack where one of their keys is another.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// Every error at once: what is random hangs on the image's number, what is systematic on time or position.
+// Every error is on at once: random errors hang on the image's number, systematic ones on time or position.
 std::string with_stage_and_camera() {
     return replaced(small_configuration, "[output]\n",
                     "[stage]\nscale_error = 0.01\nperiodic_um = 0.05\njitter_um = 0.1\nbacklash_um = 0.3\n"
@@ -32,7 +32,7 @@ class StageStack : public testing::Test {
         words.insert(words.end(), further.begin(), further.end());
         return run_program(words, folder_);
     }
-    // Without those in which the folder's name or a time stands.
+    // All files except for those in which the folder's name or a time stands.
     std::map<std::string, std::string> files_of(const std::string& out) const {
         std::map<std::string, std::string> files;
         for (const auto& entry : fs::recursive_directory_iterator(folder_ / out)) {
@@ -59,7 +59,7 @@ TEST_F(StageStack, HasTheSameBytesInOneRunResumedAndInShards) {
     fs::remove(folder_ / "resumed/stage.csv");
     ASSERT_EQ(stack("resumed").exit_code, 0);
     EXPECT_EQ(files_of("resumed"), one);
-    // Shards, the later one first.
+    // The shards are traced, the later one first.
     for (const char* shard : {"2/2", "1/2"}) {
         ASSERT_EQ(stack("shards", {"--shard", shard}).exit_code, 0);
     }
@@ -89,7 +89,7 @@ TEST_F(StageStack, KnowsTheStackOfAnotherStageOrCamera) {
         EXPECT_EQ(other.exit_code, 2) << key;
         EXPECT_THAT(other.standard_error, HasSubstr(std::string(key) + ": " + there + " there, " + here + " here"));
     }
-    // By which positions heights are told is no matter of the images: these stay, the heights do not.
+    // The images do not depend on the positions by which heights are told: they stay, the heights do not.
     const auto read = read_file(folder_ / "out/topography.tif");
     ASSERT_EQ(stack("out", {"--set", "stage.evaluate=\"nominal\""}).exit_code, 0);
     EXPECT_EQ(images(), taken);

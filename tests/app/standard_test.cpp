@@ -1,4 +1,4 @@
-// Standards through the real program: traced, measured and beside their nominal dimensions in results.json.
+// Standards are traced, measured and compared with their nominal dimensions in results.json, through the real program.
 #include "app/program.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// NA 0.45, pixels of 1 um in the object, texture of a micrometre, 32 paths a pixel.
+// The instrument has NA 0.45, pixels of 1 um in the object, a texture of a micrometre, and 32 paths a pixel.
 std::string stack_of(const std::string& specimen, double reach_um) {
     return fmt::format(R"(
 [source]
@@ -80,8 +80,8 @@ nlohmann::json results_of(const std::string& kind, const std::string& specimen, 
     return nlohmann::json::parse(read_file(folder / "out/results.json"));
 }
 
-// Within four standard errors of what the same window makes of the true heights, and of a tenth of a step by which the
-// place of a focus curve depends on what lies around it.
+// A dimension must lie within four standard errors of what the same window makes of the true heights, and a tenth of a
+// step, by which the place of a focus curve depends on what lies around it.
 void expect_dimension(const nlohmann::json& results, const std::string& name, double nominal, double seen) {
     const auto one = dimension(results, name);
     ASSERT_TRUE(one.is_object()) << results.at("dimensions");
@@ -102,13 +102,14 @@ TEST(Standard, ATracedGrooveHasItsDepthAndWidth) {
 TEST(Standard, ATracedSphereHasItsRadius) {
     const auto results = results_of("sphere", "representation = \"analytic\"\nradius_um = 120\nheight_um = 6", 10);
     expect_dimension(results, "radius", 120, 120);
-    // Its top lies 4 steps from the end of the scan: drawn towards it, the sphere is 4 standard errors too small.
+    // The sphere's top lies 4 steps from the end of the scan: were it drawn towards the end, the sphere would be 4
+    // standard errors too small.
     const auto radius = dimension(results, "radius");
     EXPECT_NEAR(radius.at("measured").get<double>(), 120, 2 * radius.at("standard_error").get<double>());
     EXPECT_LT(dimension(results, "form deviation Sq").at("measured").get<double>(), 0.2);
 }
 
-// The mean over a window of 7 um takes a part of the waves.
+// The mean over a window of 7 um lowers the waves.
 TEST(Standard, ATracedSinusoidHasItsPeriodAndWhatTheWindowLeavesOfItsAmplitude) {
     const auto results = results_of("sinusoid", "period_um = 30\namplitude_um = 3", 8);
     const double waves = 7.0 / 30 * std::numbers::pi;
@@ -116,7 +117,7 @@ TEST(Standard, ATracedSinusoidHasItsPeriodAndWhatTheWindowLeavesOfItsAmplitude) 
     expect_dimension(results, "period", 30, 30);
 }
 
-// A quarter of the rays: a warning, with how many more of them help.
+// A quarter of the rays earns a warning, with how many more of them help.
 TEST(Standard, HeightsThatRaysScatterAreWarnedOf) {
     const auto folder = fresh_folder("standard_few_rays");
     write_file(folder / "c.toml", stack_of("kind = \"sinusoid\"\nperiod_um = 30\namplitude_um = 3", 8));

@@ -1,4 +1,4 @@
-// vkfv --sweep: every combination, once, with the noise that its rays make.
+// vkfv --sweep traces every combination once, with the noise that its rays make.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 
@@ -59,15 +59,15 @@ TEST(Sweep, ImagesOfEveryCombination) {
     ASSERT_EQ(rows[0][0], "g");
     ASSERT_EQ(rows[0][2], "signal to noise");
     const auto ratio = [&](std::size_t row) { return std::stod(rows[row][2]); };
-    // Sixteen times the rays, four times the ratio. With n rays detected its own relative error is 1 / (2 sqrt(n));
-    // five of them for the fewest, some 500, are 11 %.
+    // Sixteen times the rays give four times the ratio of signal to noise. With n rays detected its own relative error
+    // is 1 / (2 sqrt(n)); five of these for the fewest rays, some 500, are 11 %.
     EXPECT_NEAR(ratio(2) / ratio(1), 4, 0.45);
     EXPECT_NEAR(ratio(4) / ratio(3), 4, 0.45);
     EXPECT_GT(ratio(3), 1.2 * ratio(1)); // a mirror sends more light back into the pupil
     EXPECT_TRUE(fs::exists(folder / "out/sweep.svg"));
     EXPECT_TRUE(fs::exists(folder / "out/charts.svg"));
 
-    // What is there is kept, and what is missing is made as it was.
+    // Images that are there are kept, and images that are missing are made again with the same bits.
     const auto kept = fs::last_write_time(folder / "out/g=0.3,N=20000/image.tif");
     const auto image = read_file(folder / "out/g=1,N=320000/image.tif");
     fs::remove_all(folder / "out/g=1,N=320000");
@@ -83,7 +83,7 @@ TEST(Sweep, ImagesOfEveryCombination) {
     EXPECT_NE(read_file(folder / "out/g=1,N=320000/image.tif"), image);
 }
 
-// What decides an image or stands beside it makes it anew; commas and bars in a label do not break the tables.
+// Settings that decide an image or stand beside it make it anew; commas and bars in a label do not break the tables.
 TEST(Sweep, AnotherDeviceOrBlurIsAnotherImage) {
     const auto folder = fresh_folder("again");
     write_file(folder / "c.toml", with_sweep(replaced(replaced(of_rays, "label = \"g\"", "label = \"g, \\\"|\\\"\""),
@@ -119,7 +119,7 @@ TEST(Sweep, ImagesAtSeveralHeightsAreThoseImages) {
     EXPECT_NE(images::read_image(folder / "out/z=0/image.tif").values, images::read_image(folder / "one.tif").values);
 }
 
-// What has no value is not drawn, and is none too when the image is taken over from an earlier run.
+// A figure without a value is not drawn, and stays without one when the image is taken over from an earlier run.
 TEST(Sweep, AnImageWithoutLightHasNoNoise) {
     const auto folder = fresh_folder("dark");
     write_file(folder / "c.toml", with_sweep(replaced(of_rays, "[2e4, 3.2e5]", "[1, 2e4]")));

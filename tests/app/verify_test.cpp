@@ -1,4 +1,4 @@
-// vkfv --verify: what is damaged is found, and the next run makes it again.
+// vkfv --verify finds damaged files, and the next run makes them again.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -26,14 +26,15 @@ std::vector<fs::path> files_in(const fs::path& folder) {
     return files;
 }
 
-// A bit in the middle.
+// Flips a bit in the middle of the file.
 void damage(const fs::path& file) {
     std::string bytes = read_file(file);
     bytes[bytes.size() / 2] ^= 4;
     write_file(file, bytes);
 }
 
-// Damages every file, one after the other: found and named; then all, and `command` makes them as they were.
+// Damages every file, one after the other, which must be found and named; then all, and `command` makes them as they
+// were.
 void expect_found_and_healed(const fs::path& folder, const std::string& results,
                              const std::vector<std::string>& command) {
     const auto files = files_in(folder / results);
@@ -109,7 +110,7 @@ TEST(Verify, RepairsTheConfigurationOfWholeImagesAlone) {
     EXPECT_EQ(read_file(out / "stack.toml.before_repair"), edited);
     EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 0);
 
-    // What was lost as a whole comes back too, and results say so.
+    // A file that was lost as a whole is repaired too, and the results say so.
     fs::remove(stack);
     EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 4);
     EXPECT_THAT(run_program({"--stack", "c.toml"}, folder).standard_error, HasSubstr("vkfv verify out --repair"));
@@ -132,7 +133,7 @@ values = [1, 2]
 )");
     const std::vector<std::string> command = {"--sweep", "c.toml", "--quiet"};
     ASSERT_EQ(run_program(command, folder).exit_code, 0);
-    // Without its image a combination is traced again, with a truncated one too.
+    // A combination without its image, or with a truncated one, is traced again.
     write_file(folder / "out/seed=1/image.tif", "II*");
     ASSERT_EQ(run_program(command, folder).exit_code, 0);
     expect_found_and_healed(folder, "out", command);

@@ -1,4 +1,4 @@
-// What the documents say holds: their links lead somewhere, their commands run, their configurations are valid.
+// The statements of the documents hold: their links lead somewhere, their commands run, their configurations are valid.
 //
 // Commands stand in fenced blocks without a language. An HTML comment on the line before a block, which readers do not
 // see, tells how it is run:
@@ -102,7 +102,7 @@ Document parse_document(const std::string& text) {
     return document;
 }
 
-// As GitHub makes them: lower case, punctuation left out, spaces as '-', a number behind those that repeat.
+// GitHub's anchors of the headings: lower case, punctuation left out, spaces as '-', a number behind those that repeat.
 std::set<std::string> anchors_of(const Document& document) {
     std::map<std::string, int> seen;
     std::set<std::string> anchors;
@@ -122,7 +122,7 @@ std::set<std::string> anchors_of(const Document& document) {
     return anchors;
 }
 
-// What is wrong with the links of a document that lies at `file`.
+// The broken links of a document that lies at `file`, each with its line and the reason.
 std::vector<std::string> broken_links(const fs::path& file, const std::string& text) {
     static const std::regex elsewhere("[a-z]+:.*");
     std::vector<std::string> broken;
@@ -256,8 +256,8 @@ int run_script(const fs::path& folder, const std::string& script) {
 }
 
 // `vkfv` as the documents call it: the program, with few rays, pixels and images where it traces, and without waves.
-// `optics`, `bench` and what is to be checked alone take long whatever is asked of them: `layout` reads the same
-// configuration.
+// `optics`, `bench` and configurations that are to be checked alone take long whatever is asked of them: `layout` reads
+// the same configuration.
 const std::string small_vkfv = R"(#!/usr/bin/env bash
 command=${1#--}
 words=("$1")
@@ -308,7 +308,7 @@ void write_stack(const fs::path& file, const fs::path& folder) {
     pages->close();
 }
 
-// A folder as that of a checkout, with the files that documents take for granted.
+// Fills a folder as a checkout is, with the files that documents take for granted.
 void furnish(const fs::path& folder) {
     fs::create_directories(folder / "bin");
     write_file(folder / "bin/vkfv", replaced(small_vkfv, "PROGRAM", program()));
@@ -341,7 +341,7 @@ bool next_command(std::istream& lines, std::string& command) {
     return found;
 }
 
-// Runs the commands of a document, in their order. What failed: "line: command: output".
+// Runs the commands of a document, in their order. Returns a line of "line: command: output" for each that failed.
 std::vector<std::string> failures_of(const std::string& text, const fs::path& folder) {
     declare();
     furnish(folder);

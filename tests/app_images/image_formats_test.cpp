@@ -1,4 +1,4 @@
-// Every format that is read, by every route on which images come in: the values are those of the picture that was
+// The values of every format that is read, by every route on which images come in, are those of the picture that was
 // written. Files are smaller and larger than 4096 bytes, a block of C's streams: readers once began behind that block.
 #include "app/program.hpp"
 #include "core/messages/error.hpp"
@@ -41,7 +41,7 @@ struct Picture {
     int at(int column, int row) const { return values.at(static_cast<std::size_t>(row * columns + column)); }
 };
 
-// Smooth shades, since lossy formats keep these best, with a corner that no mirrored picture has.
+// A picture of smooth shades, since lossy formats keep these best, with a corner that no mirrored picture has.
 Picture smooth(int columns, int rows) {
     Picture picture{.columns = columns, .rows = rows};
     for (int row = 0; row < rows; ++row) {
@@ -52,7 +52,7 @@ Picture smooth(int columns, int rows) {
     return picture;
 }
 
-// Noise, which no packing makes small.
+// A picture of noise, which no packing makes small.
 Picture noisy(int columns, int rows) {
     Picture picture = smooth(columns, rows);
     std::mt19937 random(5);
@@ -62,9 +62,9 @@ Picture noisy(int columns, int rows) {
     return picture;
 }
 
-// The picture as a file holds it whose orientation (TIFF 6.0, tag 274) is this: the stored first row is the picture's
-// top, top, bottom, bottom, left, right, right, left side, the first column its left, right, right, left, top, top,
-// bottom, bottom side.
+// The picture as a file holds it whose orientation is this (TIFF 6.0, tag 274): for 1 to 8 the stored first row is the
+// picture's top, top, bottom, bottom, left, right, right, left side, the first column its left, right, right, left,
+// top, top, bottom, bottom side.
 Picture stored_as(const Picture& seen, int orientation) {
     const bool rows_are_columns = orientation >= 5;
     Picture stored{.columns = rows_are_columns ? seen.rows : seen.columns,
@@ -84,7 +84,7 @@ Picture stored_as(const Picture& seen, int orientation) {
 
 using Write = std::function<void(const fs::path&, const Picture&)>;
 
-// One format, or one kind of it.
+// A format of images, or a variant of one, and how to write it.
 struct Kind {
     std::string name; // of the file
     Write write;
@@ -136,7 +136,7 @@ Kind by_library(std::string name, const ByLibrary& how, double tolerance = 0) {
             .tolerance = tolerance};
 }
 
-// By libtiff, for what OpenImageIO does not write. mode: "wb" is big-endian, "wl8" a little-endian BigTIFF.
+// A format that libtiff writes and OpenImageIO does not. mode: "wb" is big-endian, "wl8" a little-endian BigTIFF.
 Kind by_libtiff(std::string name, const char* mode, int bits, int photometric = PHOTOMETRIC_MINISBLACK) {
     const auto write = [=](const fs::path& path, const Picture& picture) {
         TIFF* const tiff = TIFFOpen(path.c_str(), mode);
@@ -178,7 +178,8 @@ std::string bytes_of(const Picture& picture, const std::function<int(int)>& stor
     return bytes;
 }
 
-// A palette of greys in reverse, so that a pixel's number is not its grey value (PNG specification, colour type 3).
+// Writes a palette of greys in reverse, so that a pixel's number is not its grey value (PNG specification, colour type
+// 3).
 void write_palette_png(const fs::path& path, const Picture& picture) {
     const auto chunk = [](const std::string& typed) {
         const auto sum = crc32(0, reinterpret_cast<const Bytef*>(typed.data()), static_cast<uInt>(typed.size()));
@@ -206,7 +207,7 @@ void write_palette_png(const fs::path& path, const Picture& picture) {
                          chunk("PLTE" + palette) + chunk("IDAT" + packed) + chunk("IEND"));
 }
 
-// Two bytes a value, the first the higher (netpbm's "pgm"): the library writes one byte alone.
+// Writes two bytes a value, the first the higher (netpbm's "pgm"): the library writes one byte alone.
 void write_pgm16(const fs::path& path, const Picture& picture) {
     std::string bytes = fmt::format("P5\n{} {}\n65535\n", picture.columns, picture.rows);
     for (const int value : picture.values) {
@@ -215,7 +216,7 @@ void write_pgm16(const fs::path& path, const Picture& picture) {
     write_file(path, bytes);
 }
 
-// Little-endian floats, the last row first (netpbm's "pfm"): the library writes bytes.
+// Writes little-endian floats, the last row first (netpbm's "pfm"): the library writes bytes.
 void write_pfm(const fs::path& path, const Picture& picture) {
     std::string bytes = fmt::format("Pf\n{} {}\n-1.0\n", picture.columns, picture.rows);
     for (int row = picture.rows - 1; row >= 0; --row) {
@@ -228,7 +229,8 @@ void write_pfm(const fs::path& path, const Picture& picture) {
     write_file(path, bytes);
 }
 
-// One grey channel, not packed (Adobe Photoshop file format: header, no palette, no resources, no layers, pixels).
+// Writes a grey channel that is not packed (Adobe Photoshop file format: header, no palette, no resources, no layers,
+// pixels).
 void write_psd(const fs::path& path, const Picture& picture) {
     write_file(path, "8BPS" + big_endian(1, 2) + std::string(6, '\0') + big_endian(1, 2) +
                          big_endian(static_cast<std::uint32_t>(picture.rows)) +
@@ -239,7 +241,7 @@ void write_psd(const fs::path& path, const Picture& picture) {
 std::vector<Kind> formats() {
     using OIIO::TypeDesc;
     const TypeDesc word = TypeDesc::UINT16;
-    // Packed by what every library decodes to the bit.
+    // TIFFs are packed by codes that every library decodes to the bit.
     const auto tiff = [](const char* name, TypeDesc type, double white, const char* packing, int tile = 0) {
         return by_library(name, {.format = "tiff",
                                  .type = type,
@@ -307,7 +309,7 @@ std::vector<Kind> formats() {
     return kinds;
 }
 
-// Read from a file of their own alone: in a folder they are seldom an image of the stack.
+// Formats that are read from a file of their own alone: in a folder they are seldom an image of the stack.
 std::vector<Kind> formats_of_single_files() {
     std::vector<Kind> kinds = {by_library("grey.dpx", {.format = "dpx"}), {.name = "grey.psd", .write = write_psd}};
     // The library's encoder has few colours for a picture.
@@ -343,7 +345,7 @@ void expect_channels(const std::vector<Grid<float>>& channels, const Kind& kind,
 
 void expect_by_every_route(const fs::path& file, const Kind& kind, const Picture& picture) {
     const std::string what = file.string();
-    // A file of pages; a point spread; heights; a pattern.
+    // The routes are a file of pages, a point spread, heights and a pattern.
     const scan::ImageSeries pages(file);
     EXPECT_EQ(pages.size(), 1) << what;
     expect_channels(pages.read(0), kind, picture, what);
@@ -357,7 +359,7 @@ void expect_by_every_route(const fs::path& file, const Kind& kind, const Picture
     }
     const surface::ImageScale scale{.pitch = 0.001, .unit = 0.001};
     if (file.extension() == ".tif" || file.extension() == ".tiff" || file.extension() == ".exr") {
-        // mm
+        // Heights come in mm.
         expect_picture(surface::read_surface(file, scale).map.height, picture, 0.001 * kind.white, kind.tolerance,
                        what);
     } else {
@@ -374,7 +376,7 @@ TEST(ImageFormats, EveryFormatByEveryRouteIsThePictureThatWasWritten) {
         const bool halved = kind.name.ends_with(".jp2") || kind.name.ends_with(".j2k");
         const Picture small = halved ? smooth(34, 33) : smooth(11, 7);
         for (const Picture* picture : {&small, &large}) {
-            // A folder of one image: a series of files.
+            // A folder of one image is a series of files.
             const auto folder = fresh_folder("format");
             const auto file = folder / kind.name;
             kind.write(file, *picture);
@@ -393,7 +395,7 @@ TEST(ImageFormats, EveryFormatByEveryRouteIsThePictureThatWasWritten) {
     }
 }
 
-// The wrong twin of the orientations: as stored, seven of the eight are another picture.
+// The wrong twin of the orientations: taken as stored, seven of the eight are another picture.
 TEST(ImageFormats, AnOrientationChangesThePicture) {
     const Picture picture = smooth(11, 7);
     for (int orientation = 1; orientation <= 8; ++orientation) {
@@ -482,7 +484,7 @@ TEST(ImageFormats, InksBecomeColours) {
     }
 }
 
-// Pages of one file, each larger than a block of C's streams, in any order and by several threads.
+// Pages of one file, each larger than a block of C's streams, are read in any order and by several threads.
 TEST(ImageFormats, PagesAreReadInAnyOrderAndAtOnce) {
     const auto file = fresh_folder("pages") / "pages.tif";
     constexpr int count = 6;
@@ -566,7 +568,7 @@ TEST(ImageFormats, WhatIsNotReadSaysWhatIs) {
 
 // --- By the program
 
-// A stack of photographs: the heights of JPEGs are those of the same images as PNG.
+// The heights of a stack of JPEGs, as photographs are, are those of the same images as PNG.
 TEST(ImageFormats, AStackOfJpegsHasTheHeightsOfTheSameImages) {
     const auto folder = fresh_folder("photographs");
     constexpr int side = 80, images = 9;
@@ -585,7 +587,7 @@ TEST(ImageFormats, AStackOfJpegsHasTheHeightsOfTheSameImages) {
         const auto file = folder / fmt::format("jpeg/i{}.jpg", k);
         write_by_library(file, picture, {.format = "jpeg", .words = {{"compression", "jpeg:90"}}});
         EXPECT_GT(fs::file_size(file) + 2000 * static_cast<unsigned>(std::abs(k - 4)), stream_block);
-        // What the library says of the file by its name, without vkfv.
+        // The pixels that the image library reads from the file by its name, without vkfv, are the truth.
         const auto input = OIIO::ImageInput::open(file.string());
         ASSERT_TRUE(input) << OIIO::geterror();
         std::vector<std::uint8_t> decoded(side * side);
@@ -604,7 +606,7 @@ TEST(ImageFormats, AStackOfJpegsHasTheHeightsOfTheSameImages) {
     EXPECT_GT(results["measured_share"], 0.9);
 }
 
-// Height maps that another program packed anew, against the one that vkfv wrote.
+// Height maps that another program packed anew compare as the one that vkfv wrote.
 TEST(ImageFormats, APackedHeightMapComparesAsTheSame) {
     const auto folder = fresh_folder("packed");
     surface::HeightMap map{.height = Grid<double>(70, 50), .pitch_x = 0.001, .pitch_y = 0.001};

@@ -1,4 +1,4 @@
-// vkfv --surface through the real program.
+// vkfv --surface, through the real program, finds the parameters that closed forms give.
 #include "app/program.hpp"
 #include "core/mathematics/units.hpp"
 #include "images/image_file.hpp"
@@ -25,8 +25,8 @@ using Json = nlohmann::json;
 constexpr double um = 1e-3; // mm
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
-// On a tilt and an offset ten whole periods of a wave of 0.5 um along x, 12 points long and even about the middle,
-// which makes it orthogonal to the tilt; 1 x 2 um apart.
+// A map of ten whole periods of a wave of 0.5 um along x upon a tilt and an offset. The wave is 12 points long and even
+// about the middle, which makes it orthogonal to the tilt; points are 1 x 2 um apart.
 HeightMap wavy() {
     HeightMap map{.height = Grid<double>(120, 50), .x0 = 10 * um, .y0 = -20 * um, .pitch_x = 1 * um, .pitch_y = 2 * um};
     for (int row = 0; row < map.rows(); ++row) {
@@ -70,14 +70,15 @@ TEST_F(Surface, ReportsTheParametersOfASine) {
     EXPECT_NEAR(figures["pitch_um"][1], 2, 1e-12);
     EXPECT_EQ(figures["not_measured_points"], 0);
     EXPECT_EQ(figures["treatment"]["form"], "plane");
-    // Of a sampled sine: Sq = A / sqrt 2, its outermost points 15 degrees beside the extremes. Files of metres round to
-    // 1e-16 of 3 um.
+    // A sampled sine has Sq = A / sqrt 2, and its outermost points lie 15 degrees beside the extremes. Files of metres
+    // round to 1e-16 of 3 um.
     const auto& parameters = figures["parameters"];
     EXPECT_NEAR(parameters["Sq_um"], 0.5 / std::sqrt(2), 1e-9);
     EXPECT_NEAR(parameters["Sku"], 1.5, 1e-9);
     EXPECT_NEAR(parameters["Sz_um"], std::cos(15 * radians_per_degree), 1e-9);
     EXPECT_NEAR(parameters["Std_deg"], 90, 1e-9); // the lay runs along y
-    // As in compare_test: sections of 23.8 um, at which the Gaussian leaves 0.935 of the amplitude.
+    // The closed form is that of compare_test: sections of 23.8 um, at which the Gaussian leaves 0.935 of the
+    // amplitude.
     EXPECT_NEAR(figures["profile"]["Ra_um"], 2 / pi * 0.5 * 0.935, 0.02);
     // The wrong twin: the tilt of 1.2 and 1 um over the surface is left.
     EXPECT_GT(report({"wavy.x3p", "--form", "none"})["parameters"]["Sq_um"], 0.5);
@@ -89,7 +90,7 @@ TEST_F(Surface, TakesTheProfileWhereItIsAskedFor) {
     EXPECT_NEAR(along_y["profile"]["Rq_um"], 0, 1e-9);
     EXPECT_NEAR(along_y["profile"]["section_length_um"], 98 / 5.0, 1e-9);
     EXPECT_EQ(along_y["parameters"], report({"wavy.x3p"})["parameters"]);
-    // Along the middle row it is the default's.
+    // The profile along the middle row is the default's.
     const auto row = report({"wavy.x3p", "--profile", "10,30,129,30"});
     EXPECT_NEAR(row["profile"]["Rz_um"], report({"wavy.x3p"})["profile"]["Rz_um"], 1e-9);
     EXPECT_GT(row["profile"]["Rq_um"], 0.3);
@@ -101,7 +102,7 @@ TEST_F(Surface, FiltersAsTold) {
     const double half = 0.25 / std::sqrt(2);
     EXPECT_NEAR(report({"wavy.x3p", "--s_filter_um", "12"})["parameters"]["Sq_um"], half, 0.2 * half);
     EXPECT_NEAR(report({"wavy.x3p", "--l-filter-um", "12"})["parameters"]["Sq_um"], half, 0.2 * half);
-    // 1 / (1 + 2^4) of the spline, 2^-4 of the Gaussian.
+    // At half the nesting index the spline passes 1 / (1 + 2^4) of the wave, the Gaussian 2^-4.
     const auto spline = report({"wavy.x3p", "--s_filter_um", "24", "--filter", "spline"});
     EXPECT_NEAR(spline["parameters"]["Sq_um"], 2 * half / 17, 0.5 * 2 * half / 17); // natural ends follow more
     EXPECT_EQ(spline["treatment"],
@@ -197,7 +198,7 @@ TEST_F(Surface, OfOneRowHasWhatOneRowHas) {
     row.height.rows = 1;
     row.height.values.resize(120);
     surface::write_surface(folder / "row.sdf", row);
-    // Its plane is settled along it, and takes the tilt off.
+    // The row's own line is fitted as its form, and takes the tilt off.
     EXPECT_NEAR(report({"row.sdf"})["parameters"]["Sq_um"], 0.5 / std::sqrt(2), 1e-9);
     HeightMap column = row;
     std::swap(column.height.columns, column.height.rows);
@@ -216,7 +217,7 @@ TEST_F(Surface, DoublesOfAnImageKeepTheirDigits) {
     ASSERT_TRUE(output->write_image(OIIO::TypeDesc::DOUBLE, heights.data()));
     ASSERT_TRUE(output->close());
     const auto figures = report({"doubles.tif", "--pitch_um", "1", "--unit_um", "1"});
-    // Of rounding 25000 um to double 4e-12 um are left.
+    // Rounding 25000 um to double leaves 4e-12 um.
     EXPECT_NEAR(figures["parameters"]["Sq_um"].get<double>(), 1e-3 / std::sqrt(2.0), 1e-9);
 }
 

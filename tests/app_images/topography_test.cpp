@@ -1,4 +1,4 @@
-// --topography of stacks that vkfv did not make.
+// --topography evaluates stacks that vkfv did not make.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 #include "scan/image_order.hpp"
@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 
 constexpr int side = 24, images = 12;
 
-// Texture whose contrast is exp(-(k - height)^2 / 4) in image k: sharp at 4 on the left and at 7.25 on the right.
+// The texture's contrast is exp(-(k - height)^2 / 4) in image k: it is sharp at 4 on the left and at 7.25 on the right.
 double height_at(int column) {
     return column < side / 2 ? 4 : 7.25;
 }
@@ -46,7 +46,7 @@ std::vector<std::vector<int>> stack_values(int largest) {
     return stack;
 }
 
-// The first page states `description`, and that there are so many pixels a unit.
+// A description of the first page, and its number of pixels a unit.
 struct Statement {
     std::string description;
     float per_unit = 0;
@@ -176,7 +176,8 @@ TEST(Topography, ADescendingStackHasItsHeightsTheOtherWay) {
     EXPECT_EQ(read_file(folder / "up/topography.tif"), read_file(folder / "down/topography.tif"));
 }
 
-// A flat of the same instrument: what a polynomial of it is comes off; another grid is not the same instrument.
+// A flat of the same instrument takes the curvature off by its polynomial; a flat of another grid is not of the same
+// instrument.
 TEST(Topography, AMeasuredFlatTakesTheFieldCurvatureOff) {
     const auto folder = fresh_folder("flat");
     write_pages<std::uint16_t>(folder / "stack.tif", stack_values(60000), 1, OIIO::TypeDesc::UINT16);
@@ -199,7 +200,7 @@ TEST(Topography, AMeasuredFlatTakesTheFieldCurvatureOff) {
                     << column << " " << row;
             }
     const auto results = nlohmann::json::parse(read_file(folder / "corrected/results.json"));
-    // Over columns and rows of 0 to 23. Levelled, the parabola is left: 11.5^2 - 0.5^2 times 1e-3 um, of which the
+    // Columns and rows count from 0 to 23. Levelled, the parabola is left: 11.5^2 - 0.5^2 times 1e-3 um, of which the
     // S-filter of three pixels rounds a little off.
     EXPECT_NEAR(results["flatness"]["polynomial_peak_to_valley_um"], 0.23 + 0.529, 1e-3);
     EXPECT_NEAR(results["flatness"]["z_flt_um"], 0.132, 0.015);
@@ -232,7 +233,7 @@ TEST(Topography, AMeasuredFlatTakesTheFieldCurvatureOff) {
     EXPECT_EQ(evaluate(folder, "stack.tif", "empty", {"--set", "topography.flatness_file=none"}).exit_code, 0);
 }
 
-// A grey image with an opacity that is nowhere whole.
+// Writes a grey image with an opacity that is nowhere whole.
 void write_transparent_png(const std::filesystem::path& path, const std::vector<int>& image) {
     const auto output = OIIO::ImageOutput::create("png");
     OIIO::ImageSpec spec(side, side, 2, OIIO::TypeDesc::UINT8);
@@ -363,7 +364,7 @@ TEST(Topography, WhatIsMissingIsNamed) {
     EXPECT_THAT(elsewhere.standard_error, HasSubstr("--topography"));
 }
 
-// cases/20: what a file states is used where no option says otherwise, and its channels are no heights.
+// The statements of a file are used where no option says otherwise, and its channels are no heights (cases/20).
 TEST(Topography, WhatAFileStatesIsUsed) {
     const auto folder = fresh_folder("stated");
     const auto stack = stack_values(255);
@@ -396,7 +397,7 @@ TEST(Topography, WhatAFileStatesIsUsed) {
     EXPECT_THAT(not_chosen.standard_error, HasSubstr("--channel 1 to 2"));
     EXPECT_EQ(run({"two.tif", "--channel", "3", "--out", "refused"}).exit_code, 2);
     EXPECT_EQ(run({"two.tif", "--channel", "2", "--frame", "2", "--out", "refused"}).exit_code, 2);
-    // Within 1 % nothing is said; beyond, both are told and the option counts.
+    // Where option and file differ by less than 1 % nothing is said; beyond, both are told and the option counts.
     const auto near = run({"two.tif", "--channel", "2", "--z_step_um", "0.503", "--out", "near"});
     EXPECT_THAT(near.standard_error, testing::Not(HasSubstr("but the file states")));
     const auto other = run({"two.tif", "--channel", "2", "--z_step_um", "1", "--pitch_um", "2.1", "--out", "other"});
@@ -421,7 +422,8 @@ TEST(Topography, WhatAFileStatesIsUsed) {
     // X3P, which has a date in any case, has that of the images.
     ASSERT_EQ(run_program({"surface", "ome/topography.x3p", "--out", "dated.csv"}, folder).exit_code, 0);
     EXPECT_THAT(read_file(folder / "dated.csv"), HasSubstr("date=2024-02-29T01:02:03Z"));
-    // Where the planes stand is the start, from which less than a hundredth of a step is no other start.
+    // The scan starts where the planes stand; a start that differs by less than a hundredth of a step is no other
+    // start.
     std::string planes;
     for (std::size_t k = 0; k < stack.size(); ++k) {
         planes += fmt::format("<Plane TheZ=\"{}\" TheC=\"0\" TheT=\"0\" PositionZ=\"{}\" PositionZUnit=\"um\"/>", k,
@@ -446,10 +448,10 @@ TEST(Topography, WhatAFileStatesIsUsed) {
         EXPECT_EQ(results["z_start_um"], *start == '\0' ? 3 : std::stod(start));
         std::filesystem::remove_all(folder / "placed");
     }
-    // The step alone is given: the file's start stands.
+    // An option gives the step alone: the file's start stands.
     ASSERT_EQ(run({"placed.tif", "--z_step_um", "0.5", "--out", "placed"}).exit_code, 0);
     EXPECT_EQ(nlohmann::json::parse(read_file(folder / "placed/results.json"))["z_start_um"], 3);
-    // Resolution tags, and those of a printer.
+    // Resolution tags state the pitch, unless they are those of a printer.
     write_pages<std::uint8_t>(folder / "tags.tif", stack, 1, OIIO::TypeDesc::UINT8, {"", 5000, "cm"});
     const auto tags = run({"tags.tif", "--z_step_um", "0.5", "--out", "tags"});
     ASSERT_EQ(tags.exit_code, 0) << tags.standard_error;
@@ -460,7 +462,8 @@ TEST(Topography, WhatAFileStatesIsUsed) {
     EXPECT_THAT(print.standard_error, HasSubstr("as for a printer"));
 }
 
-// cases/22: what is no image of the series is left out by name, and images that are missing leave their heights.
+// A file that is no image of the series is left out by name, and images that are missing leave their heights
+// (cases/22).
 TEST(Topography, AFolderMayHoldMoreAndLessThanTheSeries) {
     const auto folder = fresh_folder("series");
     const auto stack = stack_values(255);
@@ -506,8 +509,8 @@ TEST(Topography, AFolderMayHoldMoreAndLessThanTheSeries) {
                 1e-8);
 }
 
-// A camera with an offset of its own in each pixel, light that falls off, pixels that are always lit and one that never
-// is.
+// The camera has an offset of its own in each pixel, light that falls off, pixels that are always lit and one that
+// never is.
 TEST(Topography, DarkAndFlatFieldAreTakenOff) {
     const auto folder = fresh_folder("corrected");
     const auto stack = stack_values(20000);
@@ -573,7 +576,7 @@ TEST(Topography, DarkAndFlatFieldAreTakenOff) {
     constexpr double rounding = 5e-6; // mm, of values to whole numbers
     EXPECT_LT(worst, rounding);
     EXPECT_GT(worst_raw, rounding); // wrong twin: nothing taken off
-    // Of another size, unlit, or lit.
+    // Images that are taken off must exist, have the stack's size, and be dark or lit as their option says.
     write_file(folder / "small.pgm", "P5\n2 2\n255\n\1\2\1\2");
     for (const auto& [option, file, words] : std::vector<std::array<std::string, 3>>{
              {"--dark", "small.pgm", "24 x 24 pixels"}, {"--flat-field", "none.tif", "no such file"}}) {
@@ -587,7 +590,8 @@ TEST(Topography, DarkAndFlatFieldAreTakenOff) {
     EXPECT_THAT(unlit_flat.standard_error, HasSubstr("more light"));
 }
 
-// A stack.toml that claims more pixels, or more images, than there are: refused before any work is sized by it.
+// Exposures that jump between two images and saturated pixels are reported as faults of the images. The wrong twin, the
+// stack without either, gives no warning.
 TEST(Topography, FaultsOfTheImagesAreTold) {
     const auto folder = fresh_folder("faults");
     auto stack = stack_values(40000);
@@ -615,6 +619,7 @@ TEST(Topography, FaultsOfTheImagesAreTold) {
     EXPECT_THAT(shuffled.standard_error, Not(HasSubstr("stays so")));
 }
 
+// A stack.toml that claims more pixels, or more images, than there are is refused before any work is sized by it.
 TEST(Topography, WorkIsSizedByTheImages) {
     const auto folder = fresh_folder("claimed");
     std::filesystem::copy(std::filesystem::path(VKFV_SOURCE_DIR) / "tests/data/stacks_1.0.0/finished", folder / "stack",
@@ -632,7 +637,7 @@ TEST(Topography, WorkIsSizedByTheImages) {
     };
     refused("\npixels = 32\n", "\npixels = 16000\n", "16000 x 16000, as stack.toml claims");
     refused("\nz_stop_um = 12.5\n", "\nz_stop_um = 5000\n", "as stack.toml claims");
-    // What is for images alone is refused beside a stack.toml, not passed over.
+    // Options for images alone are refused beside a stack.toml, not passed over.
     write_file(file, claims);
     for (const char* option : {"--dark", "--flat-field"}) {
         const auto beside = run_program({"--topography", "stack", "--out", "out", option, "none.tif"}, folder);
@@ -652,7 +657,7 @@ TEST(NaturalOrder, CountsNumbers) {
     EXPECT_NE(naturally_before("a01", "a1"), naturally_before("a1", "a01"));
     EXPECT_FALSE(naturally_before("a1", "a1"));
     EXPECT_TRUE(naturally_before("a1z", "b0"));
-    // A strict weak order: sorted is sorted, whatever the order before.
+    // The order is a strict weak one: sorted names are sorted, whatever the order before.
     std::vector<std::string> names = {"z1", "z2", "z10", "z10a", "z11", "z100"};
     const auto sorted = names;
     std::mt19937 random(1);
@@ -663,7 +668,7 @@ TEST(NaturalOrder, CountsNumbers) {
     }
 }
 
-// Names in the order of their heights, whatever the order that they are given in; doubtful ones say so.
+// Names are put in the order of their heights, whatever the order that they are given in; doubtful ones say so.
 TEST(ImageOrder, IsThatOfTheNumberInWhichNamesDiffer) {
     std::mt19937 random(1);
     const auto ordered = [&](std::vector<std::string> names) {
@@ -723,7 +728,7 @@ TEST(ImageOrder, TellsAResultFromASeries) {
     EXPECT_THAT(scan::of_one_series({"z-1", "z+2", "z3"}), testing::Each(true));
     EXPECT_THAT(scan::of_one_series({"a1", "b1", "a2", "b2", "a3"}), testing::Each(true)); // no series
     EXPECT_THAT(scan::of_one_series({"a1_1", "a2_2", "a3_1", "a4_2", "out"}), testing::Each(true));
-    // What focus-stack leaves beside the photographs.
+    // focus-stack leaves aligned copies and its result beside the photographs.
     EXPECT_THAT(scan::several_series({"aligned_1", "pcb_1", "aligned_2", "pcb_2", "pcb_3", "aligned_3", "output"}),
                 testing::ElementsAre(0, 1));
     EXPECT_THAT(scan::several_series({"a1", "b1", "a2", "b2", "a3"}), testing::IsEmpty());

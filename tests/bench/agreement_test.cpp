@@ -1,4 +1,4 @@
-// Whether two images have one expectation: synthetic Poisson images, of which it is known.
+// Synthetic Poisson images, of which it is known whether two have one expectation, are told apart as often as stated.
 #include "bench/agreement.hpp"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,9 @@ bench::Measured image(std::mt19937_64& random, double mean, int shift = 0) {
 
 } // namespace
 
-// 400 pairs, mean counts from 0.05 a pixel (3 a block) on: p < 0.05 in 20 +- 4.4 of them. At 4.5 standard deviations,
-// with the conservative side open for few counts, whose chi-square varies less: false-positive rate 7e-6.
+// In 400 pairs with mean counts from 0.05 a pixel (3 a block) on, p < 0.05 in 20 +- 4.4. The bounds are at 4.5 standard
+// deviations, with the conservative side open for few counts, whose chi-square varies less: the false-positive rate is
+// 7e-6.
 TEST(Agreement, EqualExpectationsAreFoundApartAsOftenAsStated) {
     std::mt19937_64 random(11);
     for (const double mean : {0.05, 5.0}) {
@@ -42,7 +43,7 @@ TEST(Agreement, EqualExpectationsAreFoundApartAsOftenAsStated) {
         }
         EXPECT_LE(apart, 20 + 4.5 * std::sqrt(400 * 0.05 * 0.95));
         EXPECT_GE(apart, mean > 1 ? 20 - 4.5 * std::sqrt(400 * 0.05 * 0.95) : 1);
-        // 13 x 13 blocks, 400 times: the mean of chi-square per block is 1 +- sqrt(2 / 67600).
+        // There are 13 x 13 blocks, 400 times: the mean of chi-square per block is 1 +- sqrt(2 / 67600).
         EXPECT_NEAR(chi_square / degrees, 1, 4.5 * std::sqrt(2 / degrees));
     }
 }

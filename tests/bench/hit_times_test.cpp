@@ -1,4 +1,5 @@
-// What is timed must be what is said: the rays' places and directions, seen from the share that meets.
+// The rays that the bench times must be those that it describes: the share that meets the specimen, by a quadrature
+// over places and directions, shows whether they are.
 #include "bench/hit_times.hpp"
 
 #include <gmock/gmock.h>
@@ -10,7 +11,7 @@
 namespace vkfv::bench {
 namespace {
 
-// Flat at z = 0, 0.2 mm wide, but for one point far up in a corner: the top plane lies at 0.05 mm.
+// The specimen is flat at z = 0 and 0.2 mm wide, except for one point far up in a corner, to which the top plane rises.
 specimen::Specimen plain(double top) {
     specimen::HeightField field;
     field.heights = Grid<float>(129, 129);
@@ -44,8 +45,8 @@ double share_within(double top, double side, double aperture) {
 
 TEST(HitTimes, TimesTheRaysThatItSays) {
     const double share = share_within(0.05, 0.2, 0.4);
-    // Four standard errors of 2^18 rays, of which 1 in 16'000 chances falls short; the spike, half a cell wide in the
-    // mean, catches less than its shadow of some that would leave.
+    // The tolerance is four standard errors of 2^18 rays, beyond which 1 in 16'000 chances falls; the spike, half a
+    // cell wide in the mean, catches less than its shadow of some that would leave.
     const double tolerance = 4 * std::sqrt(share * (1 - share) / (1 << 18)) + 0.05 * 0.4 * 0.5 / 128 / 0.2;
     ASSERT_GT(std::abs(share_within(0.05, 0.2, 0.35) - share), 2 * tolerance); // another aperture stands out
     for (const trace::Traversal traversal :
@@ -59,7 +60,7 @@ TEST(HitTimes, TimesTheRaysThatItSays) {
         }
         // From a plane nothing comes back.
         EXPECT_EQ(time_hits(plain(0), options(traversal), 0.4, HitOrder::leaving, 1).share_met, 0);
-        // Those that start within rounding of a side may leave by it: a draw's last cell, 2^-21 of each of four sides.
+        // Rays that start within rounding of a side may leave by it: a draw's last cell is 2^-21 of each of four sides.
         EXPECT_NEAR(time_hits(plain(0), options(traversal), 0.4, HitOrder::random, 1).share_met, 1, 2e-5);
     }
 }

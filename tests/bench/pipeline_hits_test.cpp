@@ -1,5 +1,4 @@
-// A ray-tracing pipeline meets what the traversals meet, on software Vulkan: the same shaders and tables that a GPU
-// runs.
+// A ray-tracing pipeline meets what the traversals meet, on software Vulkan, by the shaders and tables that a GPU runs.
 #include "bench/pipeline_hits.hpp"
 #include "specimen/description.hpp"
 
@@ -11,7 +10,7 @@
 namespace vkfv::bench {
 namespace {
 
-// 65 x 65 points over 0.1 mm, waves of 2 um up to slopes of 0.8.
+// A field of 65 x 65 points over 0.1 mm, with waves of 2 um up to slopes of 0.8.
 specimen::HeightField waves(double offset = 0) {
     specimen::HeightField field;
     field.heights = Grid<float>(65, 65);

@@ -1,4 +1,4 @@
-// The camera's model against closed forms.
+// The camera's model agrees with closed forms.
 #include "camera/camera.hpp"
 
 #include "camera/presets.hpp"
@@ -43,7 +43,7 @@ Moments image_of(const CameraOptions& options, double electrons, double seconds 
     return moments_of(camera.image(flux, seconds, 0, camera.fixed_pattern(200, 150)));
 }
 
-// 1 W of 0.5 um is lambda / (h c) photons a second; a numeral of its own, not the program's constants.
+// A flux of 1 W at 0.5 um is lambda / (h c) photons a second; the numeral is not made of the program's constants.
 TEST(Camera, WattsBecomePhotonsByWavelength) {
     const Camera camera(plain(), green);
     EXPECT_NEAR(camera.photons_per_joule(), 2.5170582e18, 1e12);
@@ -54,12 +54,12 @@ TEST(Camera, QuantumEfficiencyIsThePhotonsMeanOverTheSpectrum) {
     CameraOptions options = plain();
     options.quantum_efficiency = {.wavelengths_um = {0.4, 0.6}, .values = {0.2, 0.8}};
     const Camera camera(options, optics::Spectrum::lines({0.45, 0.55}, {1, 1}));
-    // 0.35 and 0.65 electrons a photon, and photons as the wavelengths.
+    // The sensor has 0.35 and 0.65 electrons a photon, and a line has photons in proportion to its wavelength.
     EXPECT_NEAR(camera.quantum_efficiency(), (0.45 * 0.35 + 0.55 * 0.65) / (0.45 + 0.55), 1e-12);
 }
 
-// Mean and variance of all noise together: K (electrons + dark) + offset and
-// K^2 (electrons + dark current + read^2 + dsnu^2 + (prnu electrons)^2) + 1/12, within four standard errors.
+// All noise together has the mean K (electrons + dark) + offset and the variance K^2 (electrons + dark current + read^2
+// + dsnu^2 + (prnu electrons)^2) + 1/12, within four standard errors.
 TEST(Camera, MeanAndVarianceAreTheModels) {
     CameraOptions options = plain();
     options.read_noise = 8;
@@ -103,7 +103,7 @@ TEST(Camera, LightBelowZeroIsNone) {
     const auto charged = image_of(options, -20);
     EXPECT_NEAR(charged.mean, 4 * 50 + 200, 4 * std::sqrt(16 * 50.0 / 30000));
     EXPECT_NEAR(charged.variance, 16 * 50, 4 * 16 * 50 * std::sqrt(2.0 / 30000));
-    // The light that is told is that which is counted: of 300 electrons and of -100, 150 in the mean.
+    // The light that is told is the light that is counted: of 300 electrons and of -100, 150 in the mean.
     const Camera camera(options, green);
     Grid<double> flux(20, 10, 300 / camera.electrons_per_joule());
     for (int column = 0; column < 20; column += 2) {
@@ -146,9 +146,7 @@ TEST(Camera, NoiseOfRaysAndOfTheCameraAreToldApart) {
     EXPECT_NEAR(light.camera_noise, std::sqrt((400 + 9 + 1.0 / 12 / 16) / 4), 1e-9);
 }
 
-// The clips were found by a script of scipy: Poisson probabilities summed up, averaged over normal responses, the peak
-// of the variance on a grid of means. Of a clip without it: 2.8 to 3 % below, as cameras have it.
-// Of fewer bits grey values end before the charge does: there the image saturates, and by that an exposure is set.
+// With fewer bits grey values end before the charge does: there the image saturates, and by that an exposure is set.
 TEST(Camera, SaturatesWhereGreyValuesEnd) {
     CameraOptions options = plain();
     options.bit_depth = 14; // (16383 - 200) / 4 electrons
@@ -164,6 +162,8 @@ TEST(Camera, SaturatesWhereGreyValuesEnd) {
     EXPECT_NEAR(of_more_bits.light_of(bright, {}, 1e-3).camera_noise, std::sqrt(5000 + 1.0 / 12 / 16), 1e-9);
 }
 
+// A script of scipy found the clips: Poisson probabilities summed up, averaged over normal responses, and the peak of
+// the variance on a grid of means. With equal responses the peak lies 2.8 to 3 % below the clip, as cameras have it.
 TEST(Saturation, TheVarianceIsLargestAtTheFullWell) {
     EXPECT_NEAR(clip_of_capacity(10970, 0), 11281, 1);
     EXPECT_NEAR(clip_of_capacity(9458, 0), 9744, 1);

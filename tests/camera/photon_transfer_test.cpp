@@ -1,4 +1,5 @@
-// The measurement finds what was put in: tests/acceptance/camera_ten_seeds does it with larger images and ten seeds.
+// The measurement finds the figures that were put in; tests/acceptance/camera_ten_seeds does the same with larger
+// images and ten seeds.
 #include "camera/photon_transfer.hpp"
 #include "camera/presets.hpp"
 
@@ -25,7 +26,7 @@ TEST(PhotonTransfer, FindsWhatWasPutIn) {
         const Camera camera(options, optics::Spectrum::line(0.53));
         const auto found = photon_transfer_figures(measure_photon_transfer(camera, small));
         const auto wanted = expected_figures(camera);
-        // Four standard errors or so of images that small.
+        // The tolerances are some four standard errors of images that small.
         expect_near(found.gain, wanted.gain.value, 0.012, "K");
         expect_near(found.quantum_efficiency, wanted.quantum_efficiency.value, 0.012, "QE");
         expect_near(found.read_noise, wanted.read_noise.value, 0.035, "read noise");
@@ -39,7 +40,7 @@ TEST(PhotonTransfer, FindsWhatWasPutIn) {
     }
 }
 
-// Twins that are not what is expected of the camera: the tolerances above find them.
+// The twins are figures that are not expected of the camera: the tolerances above find them.
 TEST(PhotonTransfer, FindsWhatIsOff) {
     CameraOptions options = preset_camera(Preset::imx900).value();
     const auto wanted = expected_figures(Camera(options, optics::Spectrum::line(0.53)));
@@ -85,7 +86,8 @@ TEST(PhotonTransfer, DarkNoiseIsBoundedWhereQuantisationDominates) {
                             1e-12);
             } else {
                 EXPECT_GT(found.read_noise.error, 0);
-                // The same share of all gains' error, which is some 2 % of images of this size.
+                // The read noise is off by no more than the share by which all gains are off, some 2 % for images of
+                // this size: five of these.
                 EXPECT_NEAR(found.read_noise.value, read_noise, 0.1 * read_noise);
             }
         }

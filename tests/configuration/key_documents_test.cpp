@@ -51,7 +51,7 @@ TEST(Keys, ATemplateIsAConfigurationWithEveryKey) {
     }
 }
 
-// What is commented out there is the default: with it the configuration means the same.
+// The template's values that are commented out are the defaults: with them the configuration means the same.
 TEST(Keys, DefaultsAreWhatTheReaderTakes) {
     const auto bare = read_configuration(TomlTable::parse(configuration_template(), "template.toml"));
     int tried = 0;

@@ -1,5 +1,5 @@
-// [specimen.material] of the scatter models that take more than numbers: a finish by its Sq, reflectance and index by
-// wavelength, and tables of bsdfs.
+// [specimen.material] reads the scatter models that take more than numbers: a finish by its Sq, reflectance and index
+// by wavelength, and tables of bsdfs.
 #include "configuration/configuration.hpp"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ class ScatterKeys : public testing::Test {
                          "[scan]\nz_start_um = -2\nz_stop_um = 2\nz_step_um = 1\n" +
                          material);
     }
-    // What is written out reads back to the same.
+    // Reads a configuration, whose canonical text must read back to the same, and gives its material.
     specimen::Material material(const std::string& text) const {
         const auto configuration = read(text);
         const auto again = read_text(configuration.canonical);
@@ -66,7 +66,7 @@ TEST_F(ScatterKeys, AFinishIsALobeAndAMirror) {
     const auto finish = material(table + "\"harvey-shack\"\nshoulder = 0.02\nslope = -1.7\nsq_um = 0.02\n"
                                          "sq_wavelength_um = 0.5\nreflectance = 0.8\n");
     ASSERT_EQ(finish.lobes.size(), 2u);
-    // (4 pi 0.02 / 0.5)^2 = 0.252662, and 1 - exp(-that) = 0.223270.
+    // The total integrated scatter of the finish is 1 - exp(-x) = 0.223270 with x = (4 pi 0.02 / 0.5)^2 = 0.252662.
     EXPECT_EQ(finish.lobes[0].model, "mirror");
     EXPECT_NEAR(finish.lobes[0].weight, 0.8 * (1 - 0.223270), 1e-6);
     EXPECT_EQ(finish.lobes[1].model, "harvey-shack");
@@ -101,7 +101,7 @@ TEST_F(ScatterKeys, ReflectanceAndIndexAreFunctionsOfTheWavelength) {
     EXPECT_NEAR(lobe.refractive_index.at(0.55), 0.55, 1e-12);
     EXPECT_NEAR(lobe.extinction_coefficient.at(0.4), 1.8, 1e-12); // held
     EXPECT_NEAR(lobe.reflectance.at(0.5), 1 - 0.5 / 3, 1e-12);
-    // A file counts by what it says.
+    // A file counts by its content, not by its name.
     const std::string coloured = table + "\"lambertian\"\nreflectance_file = \"colour.csv\"\n";
     const auto before = read(coloured);
     write("colour.csv", "wavelength_um,reflectance\n0.4,1\n0.7,0.6\n");
@@ -128,7 +128,7 @@ TEST_F(ScatterKeys, ATableIsReadFromItsFile) {
     const auto before = read(text);
     write("bsdf.csv", "incidence_deg,scatter_deg,bsdf_per_sr\n0,0,0.2\n0,80,0.2\n60,0,0.21\n60,80,0.21\n");
     EXPECT_NE(read(text).identity, before.identity);
-    // How much it may deviate changes no image.
+    // The deviation from reciprocity that is allowed changes no image.
     EXPECT_EQ(read(text + "reciprocity_limit = 0.5\n").identity, read(text).identity);
     EXPECT_THAT(problem(text + "reciprocity_limit = 0\n"), HasSubstr("a deviation from reciprocity"));
     EXPECT_THAT(problem(table + "\"tabulated\"\n"), HasSubstr("specimen.material.file"));

@@ -1,5 +1,5 @@
-// Every key, by its declaration: a value of another type, and one beside its range, are refused at their place with
-// the key, what was expected and a remedy. What several keys must have in common is in tests/app/bad_input_test.cpp.
+// A value of another type, and one beside its range, are refused for every key by its declaration: at their place, with
+// the key, what was expected and a remedy. Rules that several keys share are in tests/app/bad_input_test.cpp.
 #include "configuration/configuration.hpp"
 #include "configuration/key_documents.hpp"
 
@@ -16,7 +16,7 @@
 namespace vkfv {
 namespace {
 
-// The least that is a configuration, a table each.
+// The fewest lines that make a configuration, by tables.
 const std::map<std::string, std::string> least = {
     {"source", "radius_mm = 0.96\nwavelength_um = 0.5876\n"},
     {"objective", "prescription = \"10x_0.28\"\n"},
@@ -26,7 +26,7 @@ const std::map<std::string, std::string> least = {
     {"scan", "z_start_um = -2\nz_stop_um = 2\nz_step_um = 1\n"},
 };
 
-// A table that stands in another.
+// The fewest lines of a table in which another stands.
 const std::map<std::string, std::string> least_around = {
     {"source.spectrum", "[source]\nradius_mm = 0.96\n"},
     {"illumination.field", ""},
@@ -37,7 +37,7 @@ const std::map<std::string, std::string> least_around = {
     {"sweep.parameter", "[sweep]\nz_um = 0\n"},
 };
 
-// What a key needs beside it to be read at all.
+// The lines that must stand beside a key for it to be read at all.
 const std::map<std::string, std::string> beside_it = {
     {"objective.tube_length_mm", "magnification = 10\n"},
     {"specimen.font", "text = \"a\"\n"},
@@ -59,7 +59,7 @@ const std::map<std::string, std::string> beside_it = {
     {"specimen.material.lobe.reflectance_file", "scatter = \"mirror\"\n"},
 };
 
-// A table's kind, which has no default, for keys of every kind.
+// The kind of a table that has no default, for keys of every kind.
 const std::map<std::string, std::string> kind_of = {{"mesh_element", "mirror"}};
 
 struct Given {
@@ -158,7 +158,7 @@ std::vector<std::string> wrong_values(const Key& key) {
     return wrong;
 }
 
-// The problem that is told of the key at this line; none: it was not seen.
+// The problem that is told of the key at this line; none if it was not seen.
 std::optional<InputProblem> problem_of(const Given& given, const std::string& key) {
     try {
         (void)read_configuration(TomlTable::parse(given.text, "c.toml"));
@@ -194,7 +194,7 @@ TEST(WrongValues, OfEveryKeyAreRefusedAtTheirPlace) {
     EXPECT_GT(tried, 800);
 }
 
-// The wrong twin: what the declaration gives as its default is not refused, so a reader that refuses all is found.
+// The wrong twin: the default of the declaration is not refused, so a reader that refuses all is found.
 TEST(WrongValues, AreNoneOfTheDefaults) {
     int tried = 0;
     for (const KeyTable* table : key_tables()) {

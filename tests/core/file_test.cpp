@@ -84,7 +84,7 @@ TEST_F(File, InPartsIsTheSameFile) {
     EXPECT_EQ(vkfv::read_file(file), whole);
     EXPECT_EQ(sum, vkfv::Digest().add(whole).sha256());
     EXPECT_EQ(vkfv::checksum_of_file(file), sum);
-    // What its maker throws leaves the file of before, and nothing beside it.
+    // An exception of the function that makes the parts leaves the file of before, and nothing beside it.
     const auto broken = [](const vkfv::AddBytes& add) {
         add("half");
         throw vkfv::RunError("no more");
@@ -166,7 +166,7 @@ TEST_F(File, LinesAreAppended) {
     EXPECT_THROW(vkfv::append_line("/dev/full", "1"), vkfv::RunError);
 }
 
-// FIPS 180-4's example.
+// The sum is that of FIPS 180-4's example.
 TEST(Digest, IsThatOfTheStandard) {
     vkfv::Digest digest;
     digest.add("a");

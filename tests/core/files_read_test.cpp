@@ -1,4 +1,4 @@
-// Which files were read, and whether they still are what they were.
+// The program remembers which files it read, and tells whether they still are as they were.
 #include "core/files/file.hpp"
 #include "core/files/files_read.hpp"
 

@@ -23,7 +23,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The states that are told until there are so many.
+// Collects the states that are told until there are so many.
 class Listener {
   public:
     Listener() {

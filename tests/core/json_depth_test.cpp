@@ -29,7 +29,7 @@ TEST(JsonDepth, IsBoundedWithPlaceAndRemedy) {
                 HasSubstr("a.json:2:101: JSON = brackets nested 101 deep: expected at most 100 levels"));
     EXPECT_THAT(message_of(brackets, 20), HasSubstr("a.json@122: JSON"));
     EXPECT_THAT(message_of(brackets), HasSubstr("Remove what is nested so deep"));
-    // Side by side is not deep, and neither are brackets in strings.
+    // Values side by side are not deep, and neither are brackets in strings.
     std::string beside;
     for (int k = 0; k < 1000; ++k) {
         beside += "[{}],";

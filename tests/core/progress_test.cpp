@@ -47,8 +47,8 @@ TEST(Progress, PlainLinesTellImagesRateAndTimeLeft) {
 }
 
 TEST(Progress, PlainLinesComeAtMostEveryTwoSeconds) {
-    // 100 images in 10 s: at 0.1 s, then each time two seconds have passed (2.1, 4.1, 6.1, 8.1), and the
-    // last.
+    // In 10 s, 100 images are told of at 0.1 s, then each time two seconds have passed (2.1, 4.1, 6.1, 8.1), and at the
+    // end.
     EXPECT_EQ(split(report(Progress::Style::lines, 100, 0, 100ms), '\n').size(), 6u);
 }
 
@@ -86,7 +86,8 @@ TEST(Progress, ABarRenewsOneLineOfATerminal) {
 
 TEST(Progress, ABarIsRenewedAtMostTenTimesASecond) {
     const std::string text = report(Progress::Style::bar, 1001, 0, 1ms);
-    // One second: the start, one each 100 ms (the last of them is the end's), and never one an image.
+    // The run of 1.001 s has a return at its start, ten at intervals of 100 ms and a last one at its end, but not one
+    // an image.
     EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 12);
 }
 

@@ -1,4 +1,4 @@
-// One program at a time, and a list by which damage is found.
+// A folder of results belongs to one program at a time, and its list of checksums shows damage.
 #include "core/files/file.hpp"
 #include "core/files/result_folder.hpp"
 #include "core/messages/error.hpp"
@@ -96,7 +96,7 @@ TEST_F(ResultFolderTest, LaterRunsKeepWhatTheyDoNotWrite) {
     EXPECT_FALSE(ResultFolder(folder).holds("kept.txt"));
 }
 
-// What was written before would be missing, and nobody would know.
+// In a folder made anew the files written before would be missing, and nobody would know.
 TEST_F(ResultFolderTest, IsNotMadeAnewOnceItIsRemoved) {
     ResultFolder results(folder);
     results.write("one.txt", "x");

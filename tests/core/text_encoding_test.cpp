@@ -7,7 +7,7 @@
 namespace vkfv {
 namespace {
 
-// "ü=µ𝜆" as UTF-16.
+// The text "ü=µ𝜆" as UTF-16.
 std::string utf16(bool big_endian, bool marked) {
     std::string bytes;
     const auto append = [&](unsigned unit) {
@@ -39,7 +39,7 @@ TEST(TextEncoding, EveryEncodingIsTheSameText) {
 
 TEST(TextEncoding, WhatIsNoUtf8IsLatin1) {
     EXPECT_EQ(as_utf8("gr\xfc\xdf"), "gr\xc3\xbc\xc3\x9f");
-    // Overlong forms, surrogates, code points beyond the last one, cut off.
+    // Overlong forms, surrogates, code points beyond the last one and sequences cut off are no UTF-8.
     for (const std::string bytes : {"\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf5\x80\x80\x80",
                                     "\x80", "\xc3", "\xc3x"}) {
         const std::string text = as_utf8(bytes);

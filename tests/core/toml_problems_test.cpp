@@ -1,4 +1,4 @@
-// Several problems at once: each is told once, in the order of places, and none that another one caused.
+// Several problems at once are each told once, in the order of places, and none that another one caused.
 #include "core/toml/toml_reader.hpp"
 
 #include <gmock/gmock.h>
@@ -86,7 +86,7 @@ TEST(TomlProblems, TenAreToldAndTheRestCounted) {
                                testing::EndsWith("\nand 2 more")));
 }
 
-// However many there are, it ends soon.
+// The list ends soon, however many problems there are.
 TEST(TomlProblems, AreBounded) {
     std::string text = scan + lens;
     for (int i = 0; i < 5000; ++i) {
@@ -96,15 +96,15 @@ TEST(TomlProblems, AreBounded) {
 }
 
 TEST(TomlProblems, ConsequencesAreNotTold) {
-    // A check of two values of which one could not be read.
+    // A check of two values is left out where one of them could not be read.
     auto problems = problems_of("[scan]\nz_start_um = 5\nz_stop_um = \"high\"\nz_step_um = 1\nbehind = true\n" + lens);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].key, "scan.z_stop_um");
-    // The check itself; what it left unread is not unknown.
+    // The check itself is the only problem: keys that it left unread are not unknown.
     problems = problems_of("[scan]\nz_start_um = 5\nz_stop_um = 1\nz_step_um = 1\nbehind = true\n" + lens);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].expected, "a number above z_start_um");
-    // What decides on all other keys.
+    // A wrong value that decides on all other keys of its table is the only problem.
     problems = problems_of(scan + "[tube_lens]\nkind = \"thick\"\nfocal_length_mm = 200\n");
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].key, "tube_lens.kind");
@@ -122,7 +122,7 @@ TEST(TomlProblems, AMissingKeyNamesTheMisspeltOne) {
         message_of(scan + "[tubelens]\nkind = \"ideal\"\n"),
         "c.toml:5:2: tubelens = a table {kind = 'ideal'}: expected tube_lens as a table. Did you mean \"tube_lens\"? "
         "Rename it.");
-    // Of two that are missing each has its own; a key that is far from all stays by itself.
+    // Each of two missing keys is matched with its own misspelling; a key that is far from all is reported by itself.
     EXPECT_THAT(message_of("[scan]\nz_strat_um = 0\nz_spot_um = 9\nz_step_um = 1\nfoo = 2\n" + lens),
                 AllOf(HasSubstr("2:1: scan.z_strat_um = 0: expected scan.z_start_um"),
                       HasSubstr("3:1: scan.z_spot_um = 9: expected scan.z_stop_um"),

@@ -148,7 +148,7 @@ TEST(TomlReader, OverridesReplaceValuesAndNameTheirOrigin) {
     const auto trace = root.table("trace");
     EXPECT_EQ(trace.integer("rays", 1, 100'000), 1000);
     EXPECT_EQ(trace.integer("seed", 0, 10), 1);
-    // From the working directory, not from the file's folder.
+    // A path of an override counts from the working directory, not from the file's folder.
     EXPECT_EQ(root.table("specimen").file_path("file"), "letter.stl");
     EXPECT_THAT(message_of([&] { (void)root.table("detector").integer("pixels", 1, 9); }),
                 AllOf(HasSubstr("--set: detector.pixels = "), HasSubstr("many")));

@@ -1,4 +1,4 @@
-// What is kept for the next run: given back unharmed, or not at all.
+// The cache gives entries back to the next run unharmed, or not at all.
 #include "support/own_cache.hpp"
 
 #include <cstddef>
@@ -21,7 +21,7 @@ TEST_F(UserCache, GivesBackWhatWasKept) {
     EXPECT_TRUE(read_cached("other").empty());
     write_cached("some", std::span(data_).first(10));
     EXPECT_EQ(read_cached("some").size(), 10U);
-    // Nothing is left aside.
+    // No temporary file is left beside the entry.
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(*cache_folder()), {}), 1);
 }
 

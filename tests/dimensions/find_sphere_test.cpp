@@ -19,7 +19,8 @@ double cap_height(double radius, double rim, double u, double v) {
     return square < rim * rim ? std::sqrt(radius * radius - square) - std::sqrt(radius * radius - rim * rim) : 0;
 }
 
-// Noise of a fortieth of the sag: a threshold of height, or all that lies near the first sphere, takes in the ground.
+// The noise is a fortieth of the sag: a threshold of height, or all points near the first sphere, would take in the
+// ground.
 TEST(FindSphere, TheCapOfAStandardInNoise) {
     const Frame frame{.x = -0.02, .y = 0.01};
     for (const double side : {1.0, -1.0}) {

@@ -38,8 +38,8 @@ TEST(Levels, ARidgeHasItsHeight) {
     EXPECT_NEAR(height->areal, 0.002, 1e-12);
 }
 
-// What ISO 5436-1 leaves out, it leaves out for this: with corners rounded over a fifth of the width the regions see
-// nothing of them, while levels from all points are off by a tenth.
+// ISO 5436-1 leaves out the regions beside the edges because they may be rounded: with corners rounded over a fifth of
+// the width the evaluated regions see nothing of them, while levels from all points are off by a tenth.
 TEST(Levels, RoundedEdgesDoNotCount) {
     const Groove groove{.frame = {}, .width = 0.06, .depth = 0.005};
     const HeightMap map =
@@ -69,7 +69,7 @@ TEST(Levels, NoiseIsToldByTheStandardError) {
         sum += deviation * deviation;
         told += depth->profiles.standard_error * depth->profiles.standard_error;
     }
-    // Chi-square of 25 degrees of freedom: a factor of 2.3 with 99.8 %.
+    // Chi-square of 25 degrees of freedom, over these, lies between both bounds with 99.8 %.
     EXPECT_GT(sum / told, 1 / 2.7);
     EXPECT_LT(sum / told, 2.3);
 }
@@ -92,7 +92,7 @@ TEST(Levels, CorrelatedProfilesCountAsFewer) {
         told += mean.standard_error * mean.standard_error / 300;
     }
     EXPECT_NEAR(told / scatter, 1, 0.35);
-    // The wrong twin, s / sqrt(n), is wrong by eight.
+    // The wrong twin, s / sqrt(n), would be wrong by a factor of eight in variance; it is not computed here.
 }
 
 TEST(Levels, AnEdgeAloneHasItsHeight) {
@@ -133,7 +133,7 @@ TEST(Levels, LinesOfAGrating) {
 }
 
 TEST(Levels, PlateausOfAnyOutline) {
-    // A bar and a disc of other heights.
+    // A bar and a disc stand at different heights.
     const auto height = [](double u, double v) {
         return std::abs(u + 0.1) < 0.02 ? 0.004 : std::hypot(u - 0.08, v) < 0.04 ? 0.009 : 0.0;
     };

@@ -17,7 +17,7 @@ struct Disturbance {
     unsigned seed = 1;
 };
 
-// 200 x 150 points, 2 um apart: not square, and not about the frame's origin.
+// Makes a map of 200 x 150 points, 2 um apart: not square, and not about the frame's origin.
 template <class Height>
 surface::HeightMap made(const Frame& frame, const Height& height, const Disturbance& disturbance = {}) {
     surface::HeightMap map{

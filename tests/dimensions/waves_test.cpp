@@ -23,7 +23,7 @@ TEST(Waves, ASinusoidHasItsAmplitudeAndPeriodFromAStartThatIsOff) {
         const Frame frame{.x = 0.01, .angle = angle * degrees};
         const HeightMap map = made(frame, [](double u, double) { return 0.001 * std::sin(2 * pi * u / 0.0612 + 1); },
                                    {.tilt_x = 0.02, .tilt_y = -0.01, .gaps = 0.3});
-        // Nominal is 0.06: over the map a tenth of a cycle too many.
+        // The nominal period is 0.06: over the map a tenth of a cycle too many.
         const auto found = fitted_waves(map, frame, {{std::cos(frame.angle) / 0.06, std::sin(frame.angle) / 0.06}});
         ASSERT_TRUE(found) << angle;
         EXPECT_NEAR(found->waves[0].amplitude, 0.001, 1e-11) << angle;
@@ -43,7 +43,7 @@ TEST(Waves, StandardErrorsAreTheScatters) {
         periods += std::pow(wave.period() - 0.06, 2);
         told_periods += std::pow(wave.period_error, 2);
     }
-    // Chi-square of 25 degrees of freedom: a factor of 2.3 with 99.8 %.
+    // Chi-square of 25 degrees of freedom, over these, lies between both bounds with 99.8 %.
     for (const double ratio : {amplitudes / told_amplitudes, periods / told_periods}) {
         EXPECT_GT(ratio, 1 / 2.7);
         EXPECT_LT(ratio, 2.3);
@@ -101,7 +101,7 @@ TEST(Transfer, OfAChirpSmoothedByABoxIsItsSinc) {
     ASSERT_GT(transfers.size(), 8u);
     for (const auto& one : transfers) {
         const double x = pi * box / one.period;
-        // A wave's frequency changes over it.
+        // The tolerance is for a wave's frequency, which changes over its length.
         EXPECT_NEAR(one.ratio, std::sin(x) / x, 0.03 + 4 * one.standard_error) << one.period;
     }
     EXPECT_NEAR(*period_at_half(transfers), box / 0.6034, 0.0008); // sinc(0.6034) = 1/2
@@ -125,7 +125,7 @@ TEST(Transfer, OfASharpStarIsOneAndOfAHalvedOneAHalf) {
     EXPECT_NEAR(star_transfer(map, star).front().ratio, 0.5, 0.01);
 }
 
-// Pixels and focus windows round the rim: no ring reaches so far.
+// Pixels and focus windows round the rim, but no ring that is evaluated reaches so far.
 TEST(Transfer, OfAStarDoesNotDependOnItsRim) {
     const Star star{.frame = {}, .petals = 12, .radius = 0.11, .height = 0.004};
     const HeightMap map = made(star.frame, [&](double u, double v) {
@@ -158,7 +158,7 @@ TEST(SphereForm, ACapOnAPlaneWithoutItsFlanks) {
                              {.noise = 1e-5, .gaps = 0.7, .seed = seed});
         const auto form = sphere_form(map, cap);
         ASSERT_TRUE(form);
-        // Along the normal noise along z is shorter.
+        // Noise along z is shorter along the cap's normal.
         EXPECT_NEAR(form->rms, 0.9e-5, 0.15e-5);
         sum += std::pow(form->sphere.radius - cap.radius, 2);
         told += std::pow(form->radius_error, 2);

@@ -38,7 +38,7 @@ class Directives(unittest.TestCase):
                 (copy / file).write_text(text.replace(old, new, 1))
             run = subprocess.run(["cmake", "-S", copy, "-B", copy / "build"], capture_output=True, text=True)
             registry = copy / "build/physics/scatter_registry.hpp"
-            # CMake breaks lines where it likes.
+            # CMake breaks the lines of its messages where it likes.
             return " ".join(run.stderr.split()), registry.read_text() if run.returncode == 0 else ""
 
     def refused(self, file, old, new):

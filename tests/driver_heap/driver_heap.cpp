@@ -167,7 +167,8 @@ void* own_allocate(std::size_t bytes) {
     return result;
 }
 
-// In a header. Alignments above 16 bytes: a piece within a larger one, whose header tells how far in.
+// The bits of a piece's header. For alignments above 16 bytes the piece lies within a larger one, and the header tells
+// how far in.
 constexpr std::size_t is_within = std::size_t{1} << 63, is_free = std::size_t{1} << 62;
 
 void* own_allocate_aligned(std::size_t alignment, std::size_t bytes) {
@@ -183,7 +184,7 @@ void* own_allocate_aligned(std::size_t alignment, std::size_t bytes) {
     return whole + in;
 }
 
-// The piece that was allocated, and how far in what is known of it begins.
+// The piece that was allocated, and how far into it the known address lies.
 void* whole_of(void* piece, std::size_t& in) {
     const std::size_t number = number_before(piece);
     in = (number & is_within) != 0 ? number & ~is_within : 0;
@@ -258,7 +259,7 @@ int find_driver(dl_phdr_info* library, std::size_t, void* ranges) {
     return 0;
 }
 
-// Also forgets those that are no longer there.
+// Finds the drivers that are loaded now, and forgets those that are no longer there.
 void find_drivers() {
     Ranges ranges{};
     dl_iterate_phdr(find_driver, &ranges);
@@ -298,7 +299,7 @@ Function* next(std::atomic<Function*>& known, const char* name) {
 
 extern "C" {
 
-// How many bytes the heap has had in use, so that a test sees that it serves.
+// The number of bytes that the heap has had in use, so that a test sees that it serves.
 VKFV_EXPORT std::size_t vkfv_driver_heap_bytes() {
     return unused - heap_begin;
 }

@@ -1,4 +1,4 @@
-// What the address sanitizer is to find while the driver has a heap of its own: see CMakeLists.txt.
+// The address sanitizer must find these faults while the driver has a heap of its own: see CMakeLists.txt.
 #include "vulkan/device.hpp"
 
 #include <dlfcn.h>

@@ -1,4 +1,4 @@
-// The real program with one of its calls failing.
+// Runs the real program with one of its calls failing.
 #pragma once
 
 #include "app/program.hpp"
@@ -20,16 +20,18 @@ struct Fault {
 
 std::string text_of(const Fault& fault);
 
-// What the libraries of tests/faults/injected counted, in its order; their effects are for the caller to choose.
+// The calls that the libraries of tests/faults/injected counted, in the order of the log; their effects are for the
+// caller to choose.
 std::vector<Fault> counted_calls(const std::filesystem::path& log);
 
-// VKFV_EVERY_FAULT in the environment: with every effect that there is, instead of those that take a CI machine's time.
+// Whether VKFV_EVERY_FAULT is in the environment: every effect is tried, instead of those that a CI machine has time
+// for.
 bool every_fault();
 
 using Environment = std::map<std::string, std::string>;
 using Files = std::map<std::string, std::string>;
 
-// Of a run in which this call fails.
+// Adds the settings of a run in which this call fails.
 void add(Environment& environment, const Fault& fault);
 
 // The bytes of all files below a folder by their names, besides those that hold times and locks.

@@ -1,5 +1,5 @@
-// Disks that fail: each call by which a command changes files fails once. The command says so, every file is the one of
-// before or the new one, whole, and the same command once more ends as if nothing had been.
+// On disks that fail, each call by which a command changes files fails once. The command says so, every file is the one
+// of before or the new one, whole, and the same command once more ends as if nothing had been.
 #include "faults/faults.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ using Arguments = std::vector<std::string>;
 
 constexpr int run_failed = 4;
 
-// What a command writes lies here, below the folder in which it runs.
+// The folder of a command's results, below the folder in which it runs.
 const std::string results = "results";
 
 Arguments joined(Arguments arguments, const Arguments& further) {
@@ -35,14 +35,14 @@ Arguments joined(Arguments arguments, const Arguments& further) {
     return arguments;
 }
 
-// In the words of sync_folder() and write_file(), a file that is being written goes by its final name.
+// The name that sync_folder() and write_file() use in messages: a file that is being written goes by its final name.
 std::string final_name(const fs::path& file) {
     const std::string name = file.filename().string();
     const bool unfinished = name.starts_with('.') && name.ends_with(".part");
     return unfinished ? name.substr(1, name.size() - 6) : name;
 }
 
-// Text that grows by a line an image, and is written whole at the end.
+// The file of text that grows by a line an image, and is written whole at the end.
 constexpr const char* growing = "ledger.csv";
 
 bool concerns(const Fault& fault, const char* name) {
@@ -56,7 +56,8 @@ bool may_pass(const Fault& fault) {
            || (fault.effect == "lost" && (concerns(fault, "timings.csv") || concerns(fault, growing)));
 }
 
-// A sweep lists its files after each image: whole lines, each of the list of before or of the one to be.
+// Whether a list of files may stand so while a sweep runs, which writes it after each image: in whole lines, each of
+// the list of before or of the one to be.
 bool is_list_between(const std::string& name, const std::string& bytes, const Files& before, const Files& after) {
     if (!name.ends_with("checksums.sha256") || !bytes.ends_with('\n')) {
         return false;
@@ -74,7 +75,7 @@ bool is_list_between(const std::string& name, const std::string& bytes, const Fi
     return true;
 }
 
-// A file that is as it was, as it is to be, or a beginning of that in whole lines where it grows.
+// Whether a file is as it was, as it is to be, or a beginning of that in whole lines where it grows.
 bool is_whole(const std::string& name, const std::string& bytes, const Files& before, const Files& after) {
     const auto is_in = [&](const Files& files) { return files.contains(name) && files.at(name) == bytes; };
     const bool grows =
@@ -83,8 +84,8 @@ bool is_whole(const std::string& name, const std::string& bytes, const Files& be
            name.ends_with(".part");
 }
 
-// Whether this call is to fail on a machine with little time: each that writes, and of the others some of every file
-// and kind.
+// Whether this call is to fail on a machine with little time: each call that writes is, and of the others some of every
+// file and kind.
 bool is_taken(const Fault& call, std::size_t place, std::size_t calls) {
     constexpr std::size_t few = 40, step = 11; // a file takes seven calls
     return every_fault() || calls < few || call.call == "write" || place % step == 0;
@@ -110,7 +111,7 @@ class FileFaults : public testing::Test {
                        "\"specimen.material.g\"\nvalues = [0.3, 1.0]\n");
     }
 
-    // Three small images by the host and without waves, so that many runs cost little.
+    // Three small images are traced on the host and without waves, so that many runs cost little.
     static Arguments traced(const std::string& command, const std::string& out, const Arguments& further = {}) {
         return joined({command, "c.toml", "--out", out, "--rays", "500", "--quiet", "--set", "scan.z_start_um=-1",
                        "--set", "scan.z_stop_um=1"},
@@ -125,7 +126,7 @@ class FileFaults : public testing::Test {
 
     const fs::path& folder() const { return folder_; }
 
-    // Each call of the command that changes a file below `results`, which holds what was prepared there.
+    // Fails each call of the command that changes a file below `results`, which holds what was prepared there.
     void fail_every_call_of(const Arguments& arguments) {
         fs::create_directories(folder_ / results);
         fs::copy(folder_ / results, folder_ / "kept", fs::copy_options::recursive);

@@ -1,5 +1,5 @@
-// Devices that fail: each call of Vulkan that a command makes fails, once or from then on. The command opens the device
-// again and goes on, or says so in words of its own, and once more ends in the same bytes.
+// On devices that fail, each call of Vulkan that a command makes fails, once or from then on. The command opens the
+// device again and goes on, or says so in words of its own, and run once more it ends in the same bytes.
 #include "faults/faults.hpp"
 
 #include <fmt/format.h>
@@ -30,13 +30,13 @@ constexpr int done = 0, no_device = 3, run_failed = 4;
 const std::string lost = "VK_ERROR_DEVICE_LOST", no_device_memory = "VK_ERROR_OUT_OF_DEVICE_MEMORY",
                   no_host_memory = "VK_ERROR_OUT_OF_HOST_MEMORY", other = "VK_ERROR_INITIALIZATION_FAILED";
 
-// Before there is a device that might be lost or full.
+// Whether the call is made before there is a device that might be lost or full.
 bool is_of_the_loader(const Fault& call) {
     return call.call == "vkCreateInstance" || call.call == "vkEnumeratePhysicalDevices" ||
            call.call == "vkEnumerateDeviceExtensionProperties";
 }
 
-// Without what such a call gives nothing is lost: compiled kernels are kept for the next run.
+// Whether nothing is lost without the call's result: compiled kernels are kept for the next run.
 bool may_pass(const Fault& call) {
     return call.call == "vkGetPipelineCacheData";
 }
@@ -46,15 +46,15 @@ bool may_pass_next_time(const Fault& call) {
     return call.effect == lost || call.effect == no_device_memory || call.effect == no_host_memory;
 }
 
-// All, or the one whose turn it is.
+// All effects, or the one whose turn it is.
 std::vector<std::string> effects_of(const Fault& call, std::size_t turn) {
     const auto effects = is_of_the_loader(call) ? Arguments{no_host_memory, other}
                                                 : Arguments{lost, no_device_memory, no_host_memory, other};
     return every_fault() ? effects : Arguments{effects[turn % effects.size()]};
 }
 
-// For a machine with little time: a call of every name, or of each so many-th; the first of one name, the last of the
-// next.
+// The calls for a machine with little time: one of every name, or of each so many-th; the first of one name, the last
+// of the next.
 std::vector<Fault> one_of_each(const std::vector<Fault>& calls, std::size_t every) {
     std::map<std::string, std::vector<Fault>> by_name;
     for (const Fault& call : calls) {
@@ -74,7 +74,7 @@ class VulkanFaults : public testing::Test {
   protected:
     VulkanFaults() : folder_(fresh_folder("work")) { write_file(folder_ / "c.toml", small_configuration); }
 
-    // Three small images.
+    // Traces three small images.
     static Arguments traced(const std::string& command, const Arguments& further) {
         Arguments arguments = {
             command, "c.toml",          "--out", "out", "--rays", "500", "--quiet", "--set", "scan.z_start_um=-1",
@@ -89,7 +89,7 @@ class VulkanFaults : public testing::Test {
         fs::rename(folder_ / "out", folder_ / "kept");
     }
 
-    // every: where not all calls fail, those of each so many-th name.
+    // Fails calls of every name, or of each `every`-th name.
     void fail_every_call_of(const Arguments& arguments, std::size_t every = 1) {
         restore();
         Environment counting = layer();
@@ -109,9 +109,10 @@ class VulkanFaults : public testing::Test {
             for (const std::string& effect : effects) {
                 Fault fault = call;
                 fault.effect = effect;
-                // Those that pass make it go on; of those that do not, it tells.
+                // A fault that may pass must not stop the program; a fault that lasts must end it with a message.
                 fault.lasts = !varies_ && may_pass_next_time(fault) && turn / 4 % 2 == 1;
-                // A device that others use too gets its work in other pieces: the last call of the run that has fewer.
+                // A device that others use too gets its work in other pieces: if the run has fewer calls, its last one
+                // fails.
                 std::optional<std::string> outcome;
                 while (!outcome && fault.number > 0) {
                     SCOPED_TRACE(text_of(fault));
@@ -131,7 +132,8 @@ class VulkanFaults : public testing::Test {
         EXPECT_EQ(gone_on_ > 0, arguments.front() != "--topography"); // which is begun again in no time
     }
 
-    // How often a call is made, so that one that is to fail may not come: each is lost once.
+    // Whether the number of calls changes from run to run, so that one that is to fail may not come: each is then lost
+    // once.
     bool varies_ = false;
 
   private:
@@ -150,8 +152,8 @@ class VulkanFaults : public testing::Test {
         }
     }
 
-    // Returns what became of it, in words, for a summary. None: the run did not come to this call, and did all it had
-    // to; then it is another fault, of the last call of the name.
+    // Returns in words, for a summary, how the command ended. Without a value the run did not come to this call, and
+    // did all it had to; then the fault becomes that of the last call of the name.
     std::optional<std::string> fail_once(const Arguments& arguments, Fault& fault, const Files& after) {
         Environment environment = layer();
         add(environment, fault);

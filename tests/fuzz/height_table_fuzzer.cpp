@@ -1,4 +1,4 @@
-// As a matrix and as points of a grid; with a scale, and without where the header has one.
+// A table is read as a matrix and as points of a grid, with a scale, and without one where the header has it.
 #include "surface_files/height_table.hpp"
 
 #include "surface_fuzzing.hpp"

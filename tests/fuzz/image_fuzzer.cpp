@@ -1,6 +1,6 @@
 // Any bytes are an image or an InputError: as a specimen, as a mask, and as a file of a stack, of which RunError may
-// say that the library cannot read such a kind at all. So are the number of a file's pages and what it states of
-// itself.
+// say that the library cannot read such a kind at all. The number of a file's pages and its statements are read as
+// well.
 #include "core/messages/error.hpp"
 #include "images/image_file.hpp"
 #include "images/tiff.hpp"
@@ -17,7 +17,7 @@
 
 namespace {
 
-// With the ending that belongs to the bytes.
+// A path with the ending that belongs to the bytes.
 std::filesystem::path file_for(std::string_view bytes) {
     const char* ending = bytes.starts_with("\x89PNG")            ? ".png"
                          : bytes.starts_with("\xff\xd8")         ? ".jpg"

@@ -1,4 +1,4 @@
-// What an image file states of itself: the first byte is the number of its pages, the rest its description.
+// Reads what an image file states of itself: the first byte is the number of its pages, the rest its description.
 #include "core/messages/error.hpp"
 #include "scan/stated_series.hpp"
 

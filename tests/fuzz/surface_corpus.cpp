@@ -1,5 +1,5 @@
-// Writes the corpus of the surface readers' fuzzers into a folder: small whole files of every format, and the same
-// truncated and with headers that lie.
+// Writes the corpus of the surface readers' fuzzers into a folder: small whole files of every format, truncated files,
+// and files with headers that lie.
 #include "support/instrument_files.hpp"
 #include "support/surface_files.hpp"
 #include "surface/exr_bytes.hpp"
@@ -103,7 +103,7 @@ int main(int argument_count, char** arguments) {
     const std::string x3p = whole("x3p", "gaps.x3p", true);
     write(root / "x3p" / "flipped", with(x3p, x3p.size() / 2, '\xff'));
 
-    // The fuzzer packs it: main.xml, NUL, points.
+    // The fuzzer packs the archive itself: main.xml, NUL, points.
     write(root / "x3p" / "main", std::string("<p:ISO5436_2 xmlns:p='http://www.opengps.eu/2008/ISO5436_2'><Record1>"
                                              "<FeatureType>SUR</FeatureType><Axes><CX><AxisType>I</AxisType><Increment>"
                                              "1e-6</Increment></CX><CY><AxisType>I</AxisType><Increment>2e-6"
@@ -139,7 +139,7 @@ int main(int argument_count, char** arguments) {
 
     write(root / "al3d" / "whole", al3d());
     write_cuts(root / "al3d", "whole", al3d());
-    // The third and the second tag's values.
+    // The values of the third and the second tag are replaced.
     write(root / "al3d" / "rows_2_31", al3d().replace(17 + 2 * 52 + 20, 10, "2147483648"));
     write(root / "al3d" / "tags_many", al3d().replace(17 + 52 + 20, 8, "99999999"));
 

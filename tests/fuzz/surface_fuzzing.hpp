@@ -1,4 +1,4 @@
-// What the fuzzers of surface files share.
+// The checks that the fuzzers of surface files share.
 #pragma once
 
 #include "core/messages/error.hpp"

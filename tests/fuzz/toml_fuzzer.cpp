@@ -1,5 +1,5 @@
-// Any text is a prescription or an InputError, and every prescription is written so that it reads back and is
-// written the same again. The same of configurations of an instrument and their canonical texts.
+// Any text is a prescription or an InputError, and every prescription is written so that it reads back and is written
+// the same again; and so are configurations of an instrument and their canonical texts.
 #include "configuration/configuration.hpp"
 #include "core/messages/error.hpp"
 #include "optics/prescriptions/prescription_writer.hpp"

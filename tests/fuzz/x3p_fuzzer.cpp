@@ -20,7 +20,8 @@ std::string archive_of(std::string_view bytes) {
         const auto crc = static_cast<std::uint32_t>(
             crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size())));
         const auto length = static_cast<std::uint32_t>(content.size());
-        // Flags, method (stored), time, date; checksum and sizes; lengths of name and extra field.
+        // The header of an entry: flags, method (stored), time, date; checksum and sizes; lengths of name and extra
+        // field.
         const std::string common = number(0, 2) + number(0, 2) + number(0, 2) + number(33, 2) + number(crc, 4) +
                                    number(length, 4) + number(length, 4) +
                                    number(static_cast<std::uint32_t>(name.size()), 2) + number(0, 2);

@@ -1,4 +1,4 @@
-// Real surface files: what vkfv reads of them, beside what Gwyddion reads of them and, for those named here, beside
+// Compares what vkfv reads of real surface files with what Gwyddion reads of them and, for those named here, with
 // published figures. The files are given by their folder and belong to others: tests/acceptance/check_surfaces FOLDER.
 #include "core/mathematics/units.hpp"
 #include "gwyddion/gwyddion.hpp"
@@ -21,11 +21,11 @@ namespace {
 
 using namespace vkfv;
 
-// The roundings on the way from metres to mm and back, as a share of a metre
+// The roundings on the way from metres to mm and back, as a share of a metre.
 constexpr double same_height = 1e-15;
 constexpr double six_digits = 5e-7;
 
-// Gwyddion 2.62's figures of the valid points, um; of the Ski file only Sa and Sq are known, and of the raw heights.
+// Gwyddion 2.62's figures of the valid points in um; for the Ski file only Sa and Sq are known, of the raw heights.
 struct Figures {
     const char* name;
     int columns, rows, gaps;
@@ -46,7 +46,7 @@ int gaps_of(const surface::HeightMap& map) {
     return static_cast<int>(std::ranges::count_if(map.height.values, [](double z) { return !std::isfinite(z); }));
 }
 
-// Half a unit of the sixth digit of a rounded figure.
+// Checks a figure to half a unit of the sixth digit of a rounded one.
 void check_figure(const char* name, double found, double expected) {
     const double half = 5 * std::pow(10.0, std::floor(std::log10(std::abs(expected))) - 6);
     check(std::abs(found - expected) <= half, fmt::format("{} {:.7g}, expected {:.7g}", name, found, expected));
@@ -68,7 +68,7 @@ void check_published(const Figures& figures, const surface::HeightMap& map) {
     }
 }
 
-// The first channel of lengths: MetroPro's and Wyko's files may begin with intensities.
+// Heights and mask of the first channel of lengths: MetroPro's and Wyko's files may begin with intensities.
 std::pair<GwyDataField*, GwyDataField*> heights_in_gwyddion(const test::GwyddionFile& loaded) {
     for (int channel = 0; channel < 8; ++channel) {
         GwyDataField* field = test::gwyddion_field(loaded, fmt::format("/{}/data", channel).c_str());
@@ -112,8 +112,8 @@ void check_against_gwyddion(const std::filesystem::path& file, const surface::He
                       highest * um_per_mm, largest * um_per_mm));
 }
 
-// By how much Gwyddion's triangles, which meet at a cell's mean height, have a smaller Sdr than those of the diagonals,
-// at most: opposite edges are averaged there, and the excess of an area is at most half of the squared slope.
+// The most by which Gwyddion's triangles, which meet at a cell's mean height, have a smaller Sdr than those of the
+// diagonals: opposite edges are averaged there, and the excess of an area is at most half of the squared slope.
 double less_by_triangles(const surface::HeightMap& map) {
     double sum = 0, cells = 0;
     for (int row = 0; row + 1 < map.rows(); ++row)
@@ -128,8 +128,8 @@ double less_by_triangles(const surface::HeightMap& map) {
     return sum / cells;
 }
 
-// Gwyddion takes one mean of all squared differences, not one along either axis: apart by at most the share by which
-// the one are more.
+// Gwyddion takes one mean of all squared differences, not one along either axis: they are apart by at most the share by
+// which there are more of the one.
 double uneven_pairs(const surface::HeightMap& map) {
     double along_x = 0, along_y = 0;
     for (int row = 0; row < map.rows(); ++row)
@@ -141,8 +141,8 @@ double uneven_pairs(const surface::HeightMap& map) {
     return std::abs(along_x - along_y) / (along_x + along_y);
 }
 
-// Every parameter that both have. Gwyddion's area has half a level cell more around the map, and other triangles; the
-// others are sums over the same points.
+// Compares every parameter that both have. Gwyddion's area has half a level cell more around the map, and other
+// triangles; the others are sums over the same points.
 void check_parameters(const std::filesystem::path& file, const surface::HeightMap& map) {
     constexpr double same_sum = 1e-10;
     const auto loaded = test::load_in_gwyddion(file);

@@ -1,8 +1,8 @@
-// Files as Gwyddion's own import modules see them. Gwyddion is under the GPL: test programs alone are linked with it,
-// and they are never shipped.
+// Reads files by Gwyddion's own import modules. Gwyddion is under the GPL: test programs alone are linked with it, and
+// they are never shipped.
 #pragma once
 
-// Before Gwyddion's macros of the same names.
+// libintl.h comes before Gwyddion's macros of the same names.
 #include <libintl.h>
 
 #include <libgwyddion/gwyutils.h>
@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <string>
 
-// Of Gwyddion's headers that ask for those of GTK too.
+// Gwyddion's headers that declare these two functions ask for those of GTK too.
 extern "C" void gwy_process_type_init(void);
 extern "C" void gwy_draw_type_init(void);
 
@@ -54,7 +54,8 @@ inline GwyddionFile load_in_gwyddion(const std::filesystem::path& file) {
     return loaded;
 }
 
-// Its first row is the one that Gwyddion shows on top; "/0/data" the heights, "/0/mask" 1 where nothing was measured.
+// A field of the file, "/0/data" for the heights or "/0/mask" for 1 where nothing was measured; its first row is the
+// one that Gwyddion shows on top.
 inline GwyDataField* gwyddion_field(const GwyddionFile& file, const char* name) {
     GwyDataField* field = nullptr;
     gwy_container_gis_object_by_name(file.get(), name, &field);

@@ -1,4 +1,5 @@
-// Every file that vkfv writes, as Gwyddion's own import modules see it.
+// Gwyddion's own import modules read every file that vkfv writes, with the heights, pitches and gaps that the format
+// keeps.
 #include "gwyddion/gwyddion.hpp"
 #include "support/instrument_files.hpp"
 #include "support/surface_files.hpp"
@@ -37,8 +38,8 @@ class Gwyddion : public testing::Test {
     std::filesystem::path folder_;
 };
 
-// The letter F as seen from +z, its first line at the highest y, on a slope that tells every point from the others;
-// gaps as "?"; um.
+// The letter F as seen from +z, its first line at the highest y, on a slope that tells every point from the others; in
+// um, gaps as "?".
 HeightMap letter() {
     const std::vector<std::string> lines = {"######.", "#.....?", "####...", "#......", "#...?..", "?......"};
     HeightMap map;
@@ -56,7 +57,7 @@ HeightMap letter() {
     return map;
 }
 
-// What a format keeps. Gwyddion shows a field's first row on top.
+// The precision with which a format keeps a map. Gwyddion shows a field's first row on top.
 struct Kept {
     double unit = 1e-3;    // of Gwyddion's heights per mm
     double height = 1e-20; // largest deviation of a height there
@@ -126,7 +127,7 @@ TEST_F(Gwyddion, SdfText) {
     EXPECT_TRUE(std::isnan(gwy_data_field_get_val(gwyddion_field(container, "/0/data"), 0, 5)));
 }
 
-// Float32 um. Gwyddion asks its user for the scale of a plain image.
+// The file holds um in float32. Gwyddion asks its user for the scale of a plain image.
 TEST_F(Gwyddion, Tiff) {
     write_surface(folder_ / "letter.tif", letter());
     expect_same(load(folder_ / "letter.tif", "tiffbig"), letter(),
@@ -138,7 +139,7 @@ TEST_F(Gwyddion, Gwy) {
     expect_same(load(folder_ / "letter.gwy", "gwyfile"), letter(), {});
 }
 
-// Float32 metres.
+// The file holds metres in float32.
 TEST_F(Gwyddion, Gsf) {
     write_surface(folder_ / "letter.gsf", letter());
     const GwyddionFile container = load(folder_ / "letter.gsf", "gsffile");
@@ -162,7 +163,7 @@ TEST_F(Gwyddion, GwyAsGwyddionWritesIt) {
     EXPECT_NEAR(map.pitch_y, letter().pitch_y, 1e-17);
 }
 
-// Files of instruments that are read alone.
+// Files of instruments are formats that vkfv reads alone: it and Gwyddion must find the same heights.
 TEST_F(Gwyddion, FilesOfInstruments) {
     for (const auto& [ending, import] : {std::pair{"plu", "sensofar"}, {"opd", "opdfile"}, {"dat", "metropro"}}) {
         const auto file = folder_ / (std::string("a.") + ending);

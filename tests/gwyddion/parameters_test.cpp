@@ -1,4 +1,4 @@
-// Parameters that Gwyddion has too, of the same heights.
+// Parameters that Gwyddion has too agree for the same heights.
 #include <libintl.h> // before Gwyddion's macros of the same names
 
 #include <libprocess/datafield.h>
@@ -45,7 +45,7 @@ TEST(GwyddionParameters, HeightsAreTheSameWithGaps) {
                                        &mean, &sa, &sq, &skewness, &excess);
     gwy_data_field_area_get_min_max_mask(heights.get(), mask.get(), GWY_MASK_INCLUDE, 0, 0, map.columns(), map.rows(),
                                          &lowest, &highest);
-    // Sums of 48 000 rounded terms.
+    // The tolerance is for sums of 48 000 rounded terms.
     const HeightParameters p = height_parameters(map);
     EXPECT_NEAR(p.sa, sa, 1e-11 * sa);
     EXPECT_NEAR(p.sq, sq, 1e-11 * sq);
@@ -78,17 +78,17 @@ TEST(GwyddionParameters, GradientIsTheSameWithGaps) {
 }
 
 TEST(GwyddionParameters, AreaIsTheSameButForItsBordersAndTriangles) {
-    // Gwyddion's triangles meet at the cell's mean height: less by a quarter of the squared difference of opposite
-    // edges, (k pitch)^2 / 4 of the part that runs askew, at k = 400 / mm 0.2 %.
+    // Gwyddion's triangles meet at the cell's mean height, which takes a quarter of the squared difference of opposite
+    // edges off, (k pitch)^2 / 4 of the part that runs askew: at k = 400 / mm 0.2 %.
     const HeightMap map = rough(0.0002);
     const Field heights = field_of(map, [](double z) { return z; });
     const double area = map.columns() * map.pitch_x * map.rows() * map.pitch_y;
     const double theirs = gwy_data_field_get_surface_area(heights.get()) / area - 1;
     const HybridParameters p = hybrid_parameters(map);
-    // It adds half a cell, level across the border, around the map: 1 / 300 + 1 / 240 of the area, whose excess is
-    // between none and twice the mean.
+    // Gwyddion adds half a cell, level across the border, around the map: 1 / 300 + 1 / 240 of the area, whose excess
+    // is between none and twice the mean.
     EXPECT_NEAR(p.sdr, theirs, 0.0095 * p.sdr);
-    // The wrong twin, a pitch 3 % longer.
+    // The wrong twin has a pitch 3 % longer.
     HeightMap longer = map;
     longer.pitch_x *= 1.03;
     EXPECT_GT(std::abs(hybrid_parameters(longer).sdr - theirs), 0.0095 * p.sdr);

@@ -125,7 +125,7 @@ TEST_F(ImageFile, LetterIsUprightInTheBytesOfFloatImages) {
     for (const std::string& line : letter)
         expected += line;
     EXPECT_EQ(seen, expected);
-    // The wrong twin: an image whose rows were not flipped.
+    // The wrong twin is an image whose rows were not flipped.
     std::string upside_down;
     for (auto line = letter.rbegin(); line != letter.rend(); ++line)
         upside_down += *line;
@@ -162,7 +162,7 @@ TEST_F(ImageFile, PitchBecomesPixelsPerCentimetre) {
     write_tiff(file("pitch.tif"), letter_grid(1.0f, 0.0f), {.pitch_x = 0.002, .pitch_y = 0.004, .description = "d"});
     const RawTiff tiff(file("pitch.tif"));
     EXPECT_EQ(tiff.number(296), 3u) << "resolution unit: centimetre";
-    // 10 mm / pitch; the library's rationals hold float32.
+    // The resolution is 10 mm / pitch; the library's rationals hold float32.
     EXPECT_NEAR(tiff.rational(282), 5000, 5000 * 1e-6);
     EXPECT_NEAR(tiff.rational(283), 2500, 2500 * 1e-6);
     EXPECT_EQ(tiff.text(270), "d");
@@ -200,7 +200,7 @@ TEST_F(ImageFile, HeightMapKeepsGridAndNotMeasuredPoints) {
             else // half a float32 step, 2^-24, and two roundings in double
                 EXPECT_NEAR(read.height(column, row), map.height(column, row), 6e-8 * 2.25e-3);
         }
-    // Micrometres in the file: the last row of the file is row 0.
+    // The file holds micrometres, and its last row is row 0.
     const auto pixels = RawTiff(file("map.tif")).pixels<float>();
     EXPECT_FLOAT_EQ(pixels.front(), 1.5f);
     EXPECT_FLOAT_EQ(pixels.back(), -2.25f);

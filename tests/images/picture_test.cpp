@@ -1,4 +1,4 @@
-// PNGs as OpenImageIO reads them.
+// OpenImageIO reads the PNGs as they were drawn.
 #include "images/picture.hpp"
 
 #include "core/messages/error.hpp"

@@ -1,4 +1,4 @@
-// A stack in one TIFF: OpenImageIO reads each page; ImageJ's rule is that all values stand in one block, first to last.
+// OpenImageIO reads each page of a stack in one TIFF; by ImageJ's rule all values stand in one block, first to last.
 #include "images/tiff_stack.hpp"
 
 #include "images/image_file.hpp"
@@ -80,7 +80,7 @@ TEST_F(TiffStacks, ValuesStandInOneBlockTheHighestRowFirst) {
     EXPECT_EQ(last, image(2)(2, 0));
 }
 
-// Its values are not written: 6 GB.
+// The head alone is made: the values would be 6 GB.
 TEST(TiffStack, IsABigTiffBeyondFourGigabytes) {
     TiffStack stack = three_of(PixelBits::float32);
     const auto version = [&] {
@@ -92,7 +92,7 @@ TEST(TiffStack, IsABigTiffBeyondFourGigabytes) {
     stack.columns = stack.rows = 22000;
     EXPECT_EQ(version(), 43);
     const std::string head = tiff_stack_head(stack);
-    // The header of 16 bytes, then a directory: number of entries, then entries of 20 bytes in ascending order.
+    // The header has 16 bytes; then comes a directory: number of entries, then entries of 20 bytes in ascending order.
     std::uint64_t entries = 0;
     std::memcpy(&entries, head.data() + 16, sizeof entries);
     std::uint16_t before = 0;

@@ -1,5 +1,5 @@
-// Plain TIFFs by libtiff: OpenImageIO reads what is written and writes what is read; of any other file the readers say
-// what OpenImageIO says.
+// libtiff reads and writes plain TIFFs: OpenImageIO reads what is written and writes what is read; of any other file
+// the readers say what OpenImageIO says.
 #include "images/tiff.hpp"
 
 #include "core/messages/error.hpp"
@@ -25,7 +25,7 @@
 namespace vkfv::images {
 namespace {
 
-// Every kind of float there is, NaNs by their bits.
+// An image of every kind of float there is, NaNs by their bits.
 std::vector<Grid<float>> all_kinds(int columns, int rows, int channels) {
     using limits = std::numeric_limits<float>;
     const std::vector<float> kinds = {0.0f,
@@ -61,7 +61,7 @@ std::string bits_of(const std::vector<Value>& values) {
     return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
-// In the file's order.
+// The values in the file's order, first row on top.
 template <class Value>
 std::vector<Value> from_top(std::span<const Grid<Value>> channels) {
     std::vector<Value> values;
@@ -108,7 +108,7 @@ std::string encoded(std::span<const Grid<Value>> channels, OIIO::TypeDesc type, 
     return {bytes.begin(), bytes.end()};
 }
 
-// What a reader gives or says.
+// The result of a reader as text, or the message of its error.
 template <class Read>
 std::string outcome(const Read& read) {
     try {
@@ -184,7 +184,7 @@ TEST_F(PlainTiffs, OpenImageIOReadsWhatIsWritten) {
             EXPECT_EQ(read.spec.get_float_attribute("XResolution"), 5000.0f);
             EXPECT_EQ(read.spec.get_float_attribute("YResolution"), 2500.0f);
             EXPECT_TRUE(read.bits == bits_of(from_top(std::span(image)))) << columns << " x " << rows;
-            // Of two channels libtiff cannot say what the second is: OpenImageIO reads them.
+            // libtiff cannot say what the second of two channels is: OpenImageIO reads them.
             EXPECT_EQ(plain_tiff(bytes, TiffPart::all).has_value(), channels != 2);
             expect_as_the_module(bytes, fmt::format("{} x {} x {}", columns, rows, channels));
         }
@@ -276,7 +276,7 @@ TEST_F(PlainTiffs, PagesAreOpenImageIOs) {
     expect_as_the_module({std::istreambuf_iterator<char>(stream), {}}, "two pages");
 }
 
-// Every byte of a directory another, and many ends of a file.
+// Each byte of a directory is changed, and a file is cut off at many places.
 TEST_F(PlainTiffs, DamagedFilesGiveWhatOpenImageIOGives) {
     Grid<float> heights(4, 3);
     for (std::size_t k = 0; k < 12; ++k) {

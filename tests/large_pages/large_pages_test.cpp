@@ -56,7 +56,7 @@ int main() {
         expect(is_in_large_pages(block) == (size >= large), "pages of another size than expected", size);
         ::operator delete(block);
     }
-    // Two at a time do not share a byte, whichever is freed first.
+    // Two blocks at a time do not share a byte, whichever is freed first.
     for (const bool first : {true, false}) {
         auto a = std::make_unique<std::vector<int>>(large, 1), b = std::make_unique<std::vector<int>>(large, 2);
         (first ? a : b).reset();

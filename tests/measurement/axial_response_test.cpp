@@ -12,15 +12,16 @@
 namespace vkfv::measurement {
 namespace {
 
-// Of the scalar Debye integral, at this share of the cutoff, at 0.55 um.
+// The full width at half maximum of the response along z, by the scalar Debye integral at a wavelength of 0.55 um, of a
+// wave of this share of the cutoff.
 struct AxialResponse {
     double aperture, share, full_width; // um
 };
 constexpr std::array responses = {AxialResponse{0.28, 0.25, 13.2}, AxialResponse{0.28, 0.5, 10.0},
                                   AxialResponse{0.66, 0.25, 2.15}, AxialResponse{0.66, 0.5, 1.63}};
 
-// The half width in um, from the deviation in steps that the stack's average has; of an ideal lens whose pixels are a
-// quarter of the wave of this share of the cutoff.
+// The half width in um that vkfv assumes, from the standard deviation in steps of the stack's average along z: of an
+// ideal lens, with four pixels to the wave of this share of the cutoff.
 double half_width(double aperture, double share, const char* model) {
     constexpr int pixels = 64;
     const double wave = 0.55 / (2 * aperture * share), step = 0.05 * wave; // um

@@ -56,14 +56,15 @@ TEST(DataSheets, ObjectivesHaveTheirFocalLengthApertureAndWorkingDistance) {
         EXPECT_NEAR(first.magnification, -objective.magnification, 1e-9);
         EXPECT_NEAR(first.numerical_aperture, objective.numerical_aperture, 1e-6);
         EXPECT_NEAR(first.working_distance, objective.working_distance, 1e-9);
-        // The front does nothing to light.
+        // The front of the mount does nothing to light.
         const auto bare = optics_of(named + length + tube_lens_of(objective.tube_length));
         EXPECT_NEAR(first.best_focus_offset, bare.best_focus_offset, 1e-9);
         EXPECT_NEAR(first.depth_of_field, bare.depth_of_field, 1e-12);
     }
 }
 
-// hellberg.photo: resolution lambda / (2 NA) about 0.65 um, depth of field lambda / NA^2 about 3 um, at 0.55 um.
+// hellberg.photo publishes a resolution lambda / (2 NA) of about 0.65 um and a depth of field lambda / NA^2 of about 3
+// um, at 0.55 um.
 TEST(DataSheets, TheDepthOfFieldOfAMitutoyoIsThatPublished) {
     const auto first =
         optics_of("[objective]\nkind = \"ideal\"\nmagnification = 20\nnumerical_aperture = 0.42\n" + tube_lens_of(200));
@@ -130,9 +131,9 @@ TEST(DataSheets, TelecentricLensesSeeEveryPointFromStraightAbove) {
     EXPECT_NEAR(instrument.constants.gate_position, 0, 1e-12);
 }
 
-// opto-e.com: of TC4MHRP240-F on a sensor of 1 inch 194.38 mm x 102.88 mm. Its pixels, of the IMX255 as Matrix Vision's
-// manual of the mvBlueFOX3 has them: 4112 x 2176 of 3.45 um. Published resolution by Rayleigh's criterion at 520
-// nm: 70.
+// opto-e.com publishes the field of TC4MHRP240-F on a sensor of 1 inch as 194.38 mm x 102.88 mm, and 70 um of
+// resolution by Rayleigh's criterion at 520 nm. The pixels are those of the IMX255, as Matrix Vision's manual of the
+// mvBlueFOX3 has them: 4112 x 2176 of 3.45 um.
 TEST(DataSheets, TheFieldOfATelecentricLensIsThatPublished) {
     const auto first =
         optics_of(text_of(telecentric_lenses[0]), "[detector]\npixel_um = 3.45\npixels = [4112, 2176]\n");
@@ -153,8 +154,8 @@ const Chip chips[] = {
     {"MT9P031", 7.13, "daA2500-14um"},
 };
 
-// Published diagonals count the pixels at the edge too, which cameras leave out: of 2064 x 1544 of an IMX265 they are
-// set to 2048 x 1536, 0.7 %.
+// Published diagonals count the pixels at the edge too, which cameras leave out: the 2064 x 1544 pixels of an IMX265
+// are set to 2048 x 1536, 0.7 % less.
 TEST(DataSheets, CamerasByNameAreAsLargeAsPublished) {
     for (const Chip& chip : chips) {
         SCOPED_TRACE(fmt::format("{}: {}", chip.name, chip.source));
@@ -169,7 +170,8 @@ TEST(DataSheets, CamerasByNameAreAsLargeAsPublished) {
     }
 }
 
-// FLIR, Blackfly S BFS-U3-244S8: IMX540, 5320 x 4600 pixels of 2.74 um. Under 20x a pixel sees 0.137 um.
+// FLIR publishes for the Blackfly S BFS-U3-244S8: IMX540, 5320 x 4600 pixels of 2.74 um. Under 20x a pixel sees 0.137
+// um.
 TEST(DataSheets, ACameraHasItsPixelsUnlessOthersAreGiven) {
     const std::string lenses =
         "[objective]\nkind = \"ideal\"\nmagnification = 20\nnumerical_aperture = 0.45\n" + tube_lens_of(200);
@@ -223,7 +225,8 @@ double share_of_the_flat_rings_light(double inner, double outer, double height) 
     return std::sin(2 * from_axis) * std::sin(2 * half_angle) / flat;
 }
 
-// A band of another width would be wrong at once; the right one differs by the square of the ring's width.
+// A band of another width would be wrong at once; the band of the right width differs by the square of the ring's
+// width.
 TEST(DataSheets, ARingByItsDiametersLightsTheFocusAsAFlatRing) {
     struct Ring {
         double inner, outer, height;
@@ -237,7 +240,7 @@ TEST(DataSheets, ARingByItsDiametersLightsTheFocusAsAFlatRing) {
     }
 }
 
-// The elevation in place of the height: of the middle of the ring's face.
+// The elevation in place of the height is that of the middle of the ring's face.
 TEST(DataSheets, ARingByItsElevationStandsAtItsHeight) {
     const std::string lenses =
         "[objective]\nprescription = \"10x_0.28\"\n[tube_lens]\nprescription = \"200mm\"\n" + small_chip;
@@ -267,7 +270,7 @@ TEST(DataSheets, ALedOfAColourIsABellOfItsPeakAndWidth) {
                 spectrum("kind = \"gaussian\"\ncentre_um = 0.46\nfull_width_um = 0.025\n"));
     EXPECT_TRUE(spectrum("kind = \"led\"\ncolour = \"blue\"\npeak_um = 0.46\n") ==
                 spectrum("kind = \"gaussian\"\ncentre_um = 0.46\nfull_width_um = 0.025\n"));
-    // White: more of its light is behind the phosphor than is blue.
+    // More of a white diode's light is beyond blue, by the phosphor, than is blue.
     const auto white = spectrum("kind = \"led\"\ncolour = \"white\"\n");
     EXPECT_GT(white.reference_um, 0.5);
     EXPECT_LT(white.shortest_um, 0.43);

@@ -1,4 +1,4 @@
-// What sets an exposure: the brightest light of an image, though its rays are few.
+// The brightest light of an image sets the exposure, though its rays are few.
 #include "measurement/image/camera_images.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace vkfv::measurement {
 namespace {
 
-// A field of 1 with a half of 3, and normal noise.
+// A field of 1 with a half of 3, and normal noise of this standard deviation.
 Grid<double> half_bright(double noise) {
     std::mt19937 random(4);
     std::normal_distribution<double> normal(0, 1);

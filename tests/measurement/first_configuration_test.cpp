@@ -1,5 +1,5 @@
-// The text that `vkfv new` writes: it is taken back, its instrument is the one asked for, and its scan, texture and
-// window suit it.
+// The text that `vkfv new` writes is taken back, its instrument is the one asked for, and its scan, texture and window
+// suit it.
 #include "measurement/beginning/first_configuration.hpp"
 
 #include "configuration/configuration.hpp"
@@ -49,7 +49,8 @@ TEST(FirstConfiguration, IsShortAndItsInstrumentIsTheOneAskedFor) {
         if (given.objective.kind != SheetObjective::Kind::prescription) { // glasses are not known at all wavelengths
             EXPECT_EQ(sentences_of(instrument.warnings), std::vector<std::string>());
         }
-        // Two depths of field and more beyond what the specimen is high, and at least three images within one.
+        // The scan reaches two depths of field and more beyond the specimen's height, and has at least three images
+        // within one.
         const auto& scan = configuration.scan.value();
         EXPECT_LT(scan.positions().front(), -2 * first.depth_of_field);
         EXPECT_GT(scan.positions().back(), 2 * first.depth_of_field);

@@ -1,4 +1,4 @@
-// Which focus measure a stack of vkfv's own gets: by its configuration alone, before there are images.
+// A stack of vkfv's own gets its focus measure by its configuration alone, before there are images.
 #include "configuration/configuration.hpp"
 #include "measurement/scene/assembly.hpp"
 

@@ -92,7 +92,8 @@ TEST(PhaseLimits, AreClosedFormsOfTheInstrument) {
 TEST(PhaseLimits, ScatterFillsThePupilAsItsLobeDoes) {
     const double four_errors = 4 / std::sqrt(4 * 8192 * aperture * aperture);
     EXPECT_NEAR(limits_of(1, sinusoid(0.001, of_model("lambertian"))).scatter_fill, 1, four_errors);
-    // Henyey-Greenstein's lobe about the normal has the density p(alpha) cos(alpha) / N; by quadrature.
+    // Henyey-Greenstein's lobe about the normal has the density p(alpha) cos(alpha) / N; the quadrature finds its
+    // median.
     const double g = 0.95;
     std::vector<double> light{0};
     constexpr int steps = 4000;
@@ -106,10 +107,12 @@ TEST(PhaseLimits, ScatterFillsThePupilAsItsLobeDoes) {
         ++median;
     }
     const double expected = static_cast<double>(median) / steps * std::sqrt(2.0);
-    // Of N = 7400 paths the median has the standard error 1 / (2 f sqrt(N)), f its density: 0.0035 here. Four of them.
+    // The median of N = 7400 paths has the standard error 1 / (2 f sqrt(N)), f its density: 0.0035 here, of which four
+    // are allowed.
     EXPECT_NEAR(limits_of(1, sinusoid(0.001, of_model("henyey-greenstein", {g}))).scatter_fill, expected, 0.014);
     EXPECT_LT(expected, 0.5);
-    // Far off its axis the same lobe is broad: what a ring light from 45 degrees scatters into the aperture fills it.
+    // Far off its axis a lobe of the same g is broad: the light of a ring from 45 degrees that it scatters into the
+    // aperture fills it.
     const auto description = ring_microscope(0.25 * pi);
     const auto of_ring =
         phase_limits(description, optics::assemble(description), sinusoid(0.001, of_model("henyey-greenstein", {g})));
@@ -117,7 +120,8 @@ TEST(PhaseLimits, ScatterFillsThePupilAsItsLobeDoes) {
     EXPECT_GT(of_ring.scatter_fill, 0.8);
 }
 
-// The light of a mirror is the source's image, a disc. The same difference of contrasts by areas of overlapping discs.
+// The largest difference of contrasts with the light of a mirror, which is the source's image, a disc: by the areas of
+// overlapping discs.
 double error_of_disc(double fill) {
     constexpr int steps = 600, frequencies = 100;
     const auto place = [&](int step) { return fill * (2 * (step + 0.5) / steps - 1); };
@@ -204,7 +208,7 @@ TEST(PhaseLimits, TextureIsTheStandardDeviationOfWhatTheObjectiveResolves) {
     EXPECT_LT(limits_of(1, step).texture, 1e-5) << "10 um of height, and nothing beside the edge";
 }
 
-// The cases of which partially coherent images were computed: a mirror with a sinusoid of 4 um.
+// Partially coherent images were computed of these cases: a mirror with a sinusoid of 4 um.
 TEST(PhaseLimits, TellWhereImagesOfWavesDoNotHold) {
     const auto phase = HasSubstr("changes the light's phase alone");
     const auto unfilled = HasSubstr("spread unevenly over the objective's pupil");

@@ -1,9 +1,9 @@
-// What the errors of a stage do to heights, by the peak fit that evaluations use, against closed forms. The focus curve
-// is a Gaussian of standard deviation w around the surface; least squares weighs what an image says of its place by the
+// The errors of a stage move heights, by the peak fit that evaluations use, as closed forms say. The focus curve is a
+// Gaussian of standard deviation w around the surface; least squares weighs what an image says of its place by the
 // square of the curve's slope, u^2 exp(-u^2) with u = z / w:
 //   jitter:  sigma sqrt(D / w) sqrt(integral u^4 exp(-2 u^2) du) / integral u^2 exp(-u^2) du  = 0.547 sigma sqrt(D / w)
-//   noise:   (sigma_F / A) sqrt(w D / integral u^2 exp(-u^2) du)                              = 1.062 (sigma_F / A)
-//   sqrt(w D) a sine of a rad/mm along z:  (1 - (a w)^2 / 2) exp(-(a w)^2 / 4) of its amplitude
+//   noise:   (sigma_F / A) sqrt(w D / integral u^2 exp(-u^2) du)                    = 1.062 (sigma_F / A) sqrt(w D)
+//   a sine of a rad/mm along z:  (1 - (a w)^2 / 2) exp(-(a w)^2 / 4) of its amplitude
 #include "core/mathematics/units.hpp"
 #include "focus/focus.hpp"
 #include "scan/stage.hpp"
@@ -37,7 +37,7 @@ std::vector<double> positions() {
     return result;
 }
 
-// The height that is told of a surface at `height`; noise: of each value of the curve, whose maximum is 1.
+// The height that is told of a surface at `height`; `noise` is that of each value of the curve, whose maximum is 1.
 double measured(const scan::StageMotion& motion, double height, double noise, std::mt19937& random) {
     std::normal_distribution<double> normal;
     const auto nominal = positions();
@@ -60,7 +60,8 @@ double measured(const scan::StageMotion& motion, double height, double noise, st
     return nominal.at(static_cast<std::size_t>(first + largest)) + step * fit.offset;
 }
 
-// Standard deviation of the heights' errors over a slope, apart by more than a curve is wide, and over ten seeds.
+// The standard deviation of the heights' errors over a slope, at points farther apart than a curve is wide, and over
+// ten seeds.
 double height_noise(scan::Stage stage, double noise) {
     std::mt19937 random(7);
     double squares = 0;
@@ -88,7 +89,7 @@ TEST(StageErrors, OfTheScaleAreThoseOfHeights) {
     }
 }
 
-// 2800 heights: 1.3 % of statistical error.
+// The statistical error of 2800 heights is 1.3 %.
 TEST(StageErrors, JitterMovesHeightsAsLeastSquaresSays) {
     scan::Stage stage;
     stage.jitter = 0.1 * step;
@@ -101,7 +102,7 @@ TEST(StageErrors, NoiseOfTheFocusValueMovesHeightsAsLeastSquaresSays) {
     EXPECT_NEAR(height_noise({}, 0.003) / (1.062 * 0.003 * std::sqrt(width * step)), 1, 0.05);
 }
 
-// On a slope a vibration is seen as a ripple of its aliased frequency, whatever its phase: ten seeds.
+// On a slope a vibration is seen as a ripple of its aliased frequency, whatever its phase: ten seeds give ten phases.
 class Ripple : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(Ripple, OfAVibrationHasItsAliasedFrequency) {

@@ -1,4 +1,4 @@
-// Sweeps of stacks as values: what they say is what the files of their stacks hold.
+// The values that sweeps of stacks tell are what the files of their stacks hold.
 #include "core/files/file.hpp"
 #include "core/mathematics/units.hpp"
 #include "measurement/sweep/sweep.hpp"
@@ -30,7 +30,7 @@ class SweepOfStacks : public testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    // Small stacks, of 11 images, each combination in two repeats.
+    // The stacks are small, of 11 images, and each combination has two repeats.
     std::vector<TomlOverride> overrides(const std::string& surfaces, const fs::path& out) const {
         return {{"trace.rays", "1e5", ""},
                 {"detector.pixels", "16", ""},
@@ -68,7 +68,7 @@ TEST_F(SweepOfStacks, FiguresAreThoseOfItsFiles) {
     }
     EXPECT_EQ(figures.at("rms deviation / um").get<double>(), rms / 2);
 
-    // Of two values the variance is half the square of their difference.
+    // The variance of two values is half the square of their difference.
     const auto a = surface::read_surface(stack(0) / "topography.tif").map.height.values;
     const auto b = surface::read_surface(stack(1) / "topography.tif").map.height.values;
     double variance = 0, points = 0;
@@ -96,8 +96,8 @@ TEST_F(SweepOfStacks, IsTheSameOfImagesThatWereThereAndOfFilesThatCannotBeReadBa
     EXPECT_EQ(read_file(first.folder / "sweep.csv"), table);
 }
 
-// Two cameras, each of whose stacks is evaluated by two windows: the light of one stack is traced. The folders have the
-// bytes that the stack's own command gives them.
+// Two cameras, each of whose stacks is evaluated by two windows, share the light of one stack, which is traced once.
+// The folders have the bytes that the stack's own command gives them.
 TEST_F(SweepOfStacks, TheSameLightIsTracedOnce) {
     auto text = read_file(folder_ / "c.toml");
     text = text.substr(0, text.find("[[sweep.parameter]]")) +

@@ -71,14 +71,14 @@ TEST(Agf, ReadsEveryEncodingAndLineEnd) {
     expect_catalogue(parse_agf("\xef\xbb\xbf" + catalogue, "x.agf"));
     expect_catalogue(parse_agf(utf16(catalogue, false), "x.agf"));
     expect_catalogue(parse_agf(utf16(catalogue, true), "x.agf"));
-    // The same letter of a name in Latin-1, UTF-8 and UTF-16.
+    // A letter of a name is the same in Latin-1, UTF-8 and UTF-16.
     const std::string rest = " 5\nCD 1.5\nLD 1 2\n";
     const std::string expected = "\xc3\xa9";
     EXPECT_EQ(parse_agf("NM \xe9" + rest, "x").media[0].name, expected);
     EXPECT_EQ(parse_agf("NM " + expected + rest, "x").media[0].name, expected);
     const auto wide = utf16("NM ", false) + std::string("\xe9\0", 2) + utf16(rest, false).substr(2);
     EXPECT_EQ(parse_agf(wide, "x").media[0].name, expected);
-    // A code point beyond 16 bits, and half of one.
+    // A code point beyond 16 bits is read, and half of one is not.
     const std::string pair = std::string("\x3c\xd8", 2) + "\x0d\xdf"; // U+1F30D
     EXPECT_EQ(parse_agf(utf16("NM ", false) + pair + utf16(rest, false).substr(2), "x").media[0].name,
               "\xf0\x9f\x8c\x8d");
@@ -132,7 +132,7 @@ TEST(Agf, TheFirstGlassOfANameIsTakenAndTheLogTellsOfOthers) {
     EXPECT_DOUBLE_EQ(media[0].index(1.5), 1.5);
     EXPECT_THAT(log.str(), HasSubstr("x.agf"));
     EXPECT_THAT(log.str(), HasSubstr("G (lines 1 and 7)"));
-    // Names that a catalogue does not tell apart.
+    // A catalogue does not tell these two names apart, and keeps the first glass.
     GlassCatalog glasses;
     glasses.add(parse_agf("NM A-B 5\nCD 1.5\nLD 1 2\nNM a_b 5\nCD 1.6\nLD 1 2\n", "x.agf"), "x.agf");
     EXPECT_DOUBLE_EQ(glasses.get("A-B").index(1.5), 1.5);

@@ -1,4 +1,5 @@
-// What is decentred, tilted or put between, against closed forms; through single parts and whole instruments.
+// Parts that are decentred, tilted or put between others move light as closed forms say, alone and in whole
+// instruments.
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
 #include "optics/instrument/instrument.hpp"
@@ -28,7 +29,7 @@ std::vector<physics::f64::Surface> linked(const Prescription& prescription) {
     return surfaces_of(part);
 }
 
-// Of vanishing thickness, biconvex.
+// A biconvex lens of vanishing thickness, displaced by `change`.
 Prescription thin_lens(const CoordinateBreak& change) {
     Prescription lens;
     lens.medium_before = Medium::air();
@@ -46,12 +47,12 @@ Prescription plate(double thickness, const CoordinateBreak& change) {
     return prescription;
 }
 
-// Where a ray crosses the plane z in the frame of the first vertex.
+// The point where a ray crosses the plane z in the frame of the first vertex.
 glm::dvec3 at(const Ray& ray, double z) {
     return ray.position + ray.direction * ((z - ray.position.z) / ray.direction.z);
 }
 
-// Aberrations grow with the cube of decentre and height over the square of the focal length: 1e-9 mm and a few.
+// Aberrations grow with the cube of decentre and height over the square of the focal length, here 1e-9 mm and a few.
 constexpr double decentre = 1e-2;
 
 TEST(DecentredThinLens, TakesTheImageOfInfinityAlong) {
@@ -98,7 +99,7 @@ TEST(TiltedThinLens, HasCoddingtonsFocalLines) {
     EXPECT_GT(std::abs(power({1, 0, 0}) * focal_length - 1), 0.01); // wrong twin: untilted
 }
 
-// By t sin(theta) (1 - cos(theta) / (n cos(theta'))), towards where the plate's far face leans.
+// A tilted plate displaces a ray by t sin(theta) (1 - cos(theta) / (n cos(theta'))), towards where its far face leans.
 TEST(TiltedPlate, DisplacesARay) {
     for (const double theta : {0.1, 0.5, 0.785398}) {
         const double inside = std::asin(std::sin(theta) / n);
@@ -116,12 +117,12 @@ TEST(TiltedPlate, DisplacesARay) {
     }
 }
 
-// 0.17 (1 - tan(asin(NA / n)) / tan(asin NA)) mm.
+// A cover plate of 0.17 mm moves the marginal focus by 0.17 (1 - tan(asin(NA / n)) / tan(asin NA)) mm.
 TEST(CoverPlate, MovesTheMarginalFocus) {
     const auto train = linked(plate(0.17, {}));
     const auto shift = [&](double na) {
         const double slope = na / std::sqrt(1 - na * na);
-        // A cone that converges to the axis 10 mm behind the first face.
+        // The cone converges to the axis 10 mm behind the first face.
         const auto result = test::trace(train, {10 * slope, 0, 0}, {-slope, 0, 1});
         return result.ray.position.x / slope - 10 + result.ray.position.z;
     };
@@ -157,8 +158,8 @@ TEST(CoverGlass, MovesTheObjectiveByItsReducedThickness) {
                                     {0, 0, -2}, {1e-5, 0, 1});
     const auto landed = physics::f64::fly_to_plane(traced.ray, with.constants.detector_distance, 1);
     EXPECT_NEAR(landed.position.x, 0, 1e-9);
-    // The plate over-corrects the margin: best focus moves down against the paraxial one by what the cone's rays are
-    // moved.
+    // The plate over-corrects the margin: best focus moves down against the paraxial one by as much as the plate moves
+    // the cone's rays.
     const double na = with.first_order.numerical_aperture;
     const double marginal = 0.17 * (1 - std::tan(std::asin(na / n)) / std::tan(std::asin(na)) - (1 - 1 / n));
     const double moved = with.first_order.best_focus_offset - without.first_order.best_focus_offset;
@@ -166,7 +167,7 @@ TEST(CoverGlass, MovesTheObjectiveByItsReducedThickness) {
     EXPECT_GT(moved, -marginal);
 }
 
-// Landings of rays from the object's axis with small slopes, against the undisturbed instrument's.
+// The landing of a ray from the object's axis with a small slope, less that of the undisturbed instrument.
 glm::dvec2 landing(const Instrument& instrument, double slope = 0) {
     const std::vector<physics::f64::Surface> train(instrument.surfaces.begin() + instrument.constants.imaging_first,
                                                    instrument.surfaces.end());
@@ -256,7 +257,7 @@ TEST(TiltedParts, TurnTheRayThroughTheVertexByTheThirdOrder) {
     EXPECT_GT(std::abs(landing(ideal([](auto&) {})).x - expected), 1e-3); // wrong twin: untilted
 }
 
-// Of a real tube lens the nodal point stays, as seen from the vertex that the tilt is about: the image moves with it.
+// The nodal point of a real tube lens moves, seen from the vertex that the tilt is about, and takes the image along.
 TEST(TiltedParts, MoveTheImageWithTheNodalPoint) {
     const auto straight = assemble(test::microscope());
     const double tilt = 1e-3;
@@ -274,12 +275,12 @@ TEST(TiltedParts, MoveTheImageWithTheNodalPoint) {
     }
     const double nodal_point = last - first + straight.constants.detector_distance - straight.first_order.efl_tube_lens;
     EXPECT_GT(std::abs(nodal_point), 5);
-    // Second order in the tilt.
+    // The tolerance is of second order in the tilt.
     EXPECT_NEAR(landing(tilted).x / (nodal_point * tilt), 1, 5e-3);
     EXPECT_NEAR(landing(tilted).y, 0, 1e-12);
 }
 
-// Real lenses too: one decentre through the whole microscope.
+// A decentre of the tube lens moves the image of real lenses as that of ideal ones.
 TEST(DecentredParts, MoveTheImageOfRealLenses) {
     const auto tube = displaced([](auto& d) {
         d.tube_lens_placement.change.decentre_x = decentre;
@@ -296,7 +297,8 @@ TEST(DecentredParts, StandGloballyAsLocally) {
     const auto local = ideal([&](auto& d) { d.tube_lens_placement.change = change; });
     const auto global = ideal([&](auto& d) {
         d.tube_lens_placement.change = {.tilt_x = 0.2, .tilt_y = 0.1};
-        // Object plane to the lens, on to its stop, and the distance to the tube lens.
+        // The height over the object plane is a focal length to the lens, another one to its stop, and the distance to
+        // the tube lens.
         d.tube_lens_placement.global = glm::dvec3(0.3, -0.2, 2 * objective_focal_length + tube_distance);
     });
     const auto straight = ideal([](auto&) {});
@@ -352,8 +354,8 @@ TEST(BeamSplitter, LeavesTheImage) {
     }
 }
 
-// The source is aimed at the field stop with a stop at the source as without: at a pinhole, which a search about the
-// wrong direction misses.
+// The source is aimed at the field stop with a stop at the source as without: here at a pinhole, which a search about
+// the wrong direction misses.
 TEST(IlluminationAperture, LeavesTheAim) {
     const auto pinhole = [](std::optional<double> aperture) {
         return ideal([&](auto& d) {

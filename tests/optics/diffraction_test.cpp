@@ -28,7 +28,8 @@ double sum(const Grid<float>& image) {
     return std::accumulate(image.values.begin(), image.values.end(), 0.0);
 }
 
-// Share of the Airy pattern's light within a radius (Rayleigh, 1881): 1 - J0^2 - J1^2 of v = 2 pi NA r / wavelength.
+// The share of the Airy pattern's light within a radius (Rayleigh, 1881): 1 - J0^2 - J1^2 of v = 2 pi NA r /
+// wavelength.
 double encircled(double radius) {
     const double v = 2 * pi * aperture * radius / wavelength;
     return 1 - std::pow(std::cyl_bessel_j(0, v), 2) - std::pow(std::cyl_bessel_j(1, v), 2);
@@ -98,7 +99,7 @@ TEST(Diffraction, AMeasuredPointSpreadFunctionIsCentredAndNormalised) {
     spread(4, 3) = 2; // centroid at 2.5
     spread(2, 5) = 0;
     const double pitch = 1e-3;
-    // Half the image's pitch: the two points lie 0.25 pixels left and 0.75 right of the centre.
+    // At half the image's pitch the two points lie 0.25 pixels left and 0.75 right of the centre.
     const Grid<float> image = Diffraction(spread, 0.5 * pitch, 32, 32, pitch).apply(point(32, 16, 16));
     EXPECT_NEAR(sum(image), 1, 1e-6);
     // The point at -0.25 pixels covers [-0.5, 0], the other [0.5, 1]: three quarters in the middle, the rest beside it.

@@ -1,4 +1,4 @@
-// How far something goes on: as bisection alone finds it, of fewer questions.
+// The search for how far something goes on finds the bits of bisection alone, by fewer questions.
 #include "optics/aim/farthest.hpp"
 
 #include "optics/aim/apertures.hpp"
@@ -15,7 +15,7 @@
 namespace vkfv::optics {
 namespace {
 
-// The largest t of steps of limit / 32 at which it holds, then bisection: nothing else is known of the edge.
+// The truth: the largest t of steps of limit / 32 at which it holds, then bisection. Nothing else is known of the edge.
 template <class Excess>
 std::optional<double> by_bisection(double limit, const Excess& excess, int bisections) {
     for (int step = 32; step >= 0; --step) {
@@ -76,7 +76,7 @@ TEST(Farthest, AsksLittleOfASmoothEdge) {
     EXPECT_GE(jump.asked, 22 + 40);   // nothing but bisection is left
 }
 
-// Against tracing with and without apertures, which says only whether light comes through.
+// The truth is tracing with and without apertures, which says only whether light comes through.
 TEST(Farthest, ExcessSaysWhatTheTraceDoes) {
     const Instrument instrument = assemble(test::microscope());
     const Imaging imaging = imaging_of(instrument);

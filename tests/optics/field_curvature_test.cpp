@@ -12,8 +12,8 @@
 namespace vkfv::optics {
 namespace {
 
-// A ball of glass with its stop in the middle has no axis: what it sees sharply is a sphere about its centre, whose
-// radius is the focal length n R / (2 (n - 1)). The ideal tube lens adds nothing.
+// A ball of glass with its stop in the middle has no axis: it sees a sphere about its centre sharply, whose radius is
+// the focal length n R / (2 (n - 1)). The ideal tube lens adds nothing.
 TEST(FieldCurvature, OfABallIsASphereAboutItsCentre) {
     constexpr double radius = 10, index = 1.5, focal_length = index * radius / (2 * (index - 1));
     auto description = test::ball_microscope(radius, index);
@@ -26,14 +26,14 @@ TEST(FieldCurvature, OfABallIsASphereAboutItsCentre) {
     const double largest = glm::length(first_order.field_corner);
     ASSERT_GT(largest, 2);
     for (const double r : {0.3 * largest, 0.6 * largest, first_order.field_edge, largest}) {
-        // Where the ray from the centre to the plane's point r crosses it.
+        // The truth is the height at which the ray from the centre to the plane's point r crosses the sphere.
         const double sphere = focal_length * (1 - std::cos(std::atan(r / focal_length)));
         EXPECT_NEAR(curvature.height(0.6 * r, -0.8 * r), sphere, 0.003 * sphere) << r;
         EXPECT_GT(std::abs(curvature.height(1.01 * r, 0) - sphere), 0.01 * sphere); // wrong twin: another distance
     }
 }
 
-// Between edge and corner, and within the edge: as a smaller field that is traced there finds it.
+// The curvature between edge and corner, and within the edge, is what the trace of a smaller field finds there.
 TEST(FieldCurvature, OfAnObjectiveIsWhatSmallerFieldsFind) {
     auto description = test::microscope();
     description.detector_width = 10;

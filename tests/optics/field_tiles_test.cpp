@@ -1,4 +1,4 @@
-// The filters of waves over the field.
+// The filters of waves over the field blend from tile to tile, and each is that of its own point's wavefront.
 #include "optics/waves/field_tiles.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -37,14 +37,14 @@ TEST(FieldTiles, AreBlendedBilinearly) {
         EXPECT_NEAR(sum, 1, 1e-12);
         EXPECT_NEAR(glm::length(point - share * half), 0, 1e-12);
     }
-    // Beyond the border it is as on the border.
+    // Beyond the border the shares are those on the border.
     const auto beyond = tiles.shares(3.0 * half);
     ASSERT_EQ(beyond.size(), 1u);
     EXPECT_EQ(beyond.front().tile, 24);
 }
 
-// What is the mirror image of another point's is what the point's own wavefront gives; but for points of the lattice on
-// the rim, which is known to 5e-10 of its radius.
+// The filters of a tile that is another one's mirror image are those of the point's own wavefront, except for points of
+// the lattice on the rim, which is known to 5e-10 of its radius.
 TEST(FieldTiles, OfASymmetricTrainAreMirrorImages) {
     const Instrument instrument = assemble(test::wide_microscope());
     const CellTransfer axis(instrument, 4);

@@ -1,4 +1,4 @@
-// How far the filter of the axis is from waves, anywhere in the field.
+// The filter of the axis differs from waves anywhere in the field by no more than it says.
 #include "optics/waves/filter_error.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -15,9 +15,9 @@ PointWaves waves_of(const Instrument& instrument, glm::dvec2 field) {
     return PointWaves(instrument, field, 3);
 }
 
-// On the axis it is what a grid of 8 x 8 cells leaves: by the wavefront of tests/references/wavefront_reference.py and
-// sums over another lattice of the pupil in numpy 0.0560 with the 10x, at 3/8 of the cutoff and two depths of field
-// under z = 0.
+// On the axis a grid of 8 x 8 cells leaves an error: 0.0560 with the 10x, at 3/8 of the cutoff and two depths of field
+// under z = 0, by the wavefront of tests/references/wavefront_reference.py and sums over another lattice of the pupil
+// in numpy.
 TEST(FilterError, OfTheTenfoldObjective) {
     const Instrument instrument = assemble(test::microscope());
     const PupilFilter filter(instrument, {});
@@ -37,7 +37,7 @@ TEST(FilterError, OfTheTenfoldObjective) {
             EXPECT_NEAR(glm::length(error.frequency) / filter.cutoff(), 0.375, 0.02);
             EXPECT_NEAR(error.height, -reach, 1e-12);
         } else {
-            // The wavefront differs more and more from the axis'.
+            // Farther out the wavefront differs more and more from that of the axis.
             EXPECT_GT(error.difference, 0.95 * before) << field.x;
         }
         before = error.difference;
@@ -45,7 +45,7 @@ TEST(FilterError, OfTheTenfoldObjective) {
     EXPECT_GT(before, 0.1);
 }
 
-// The spherical aberration of the 5x asks for more cells than the 10x has; what is asked for is not changed.
+// The spherical aberration of the 5x needs more cells than the 10x has; a number that is asked for is not changed.
 TEST(FilterError, DecidesHowManyCellsThereAre) {
     const Instrument instrument = assemble(test::microscope("5x_0.15"));
     const auto error = [&](const PupilFilter& filter) {
@@ -71,7 +71,7 @@ TEST(FilterError, OfATiltedDetectorIsThatOfAnUprightOne) {
     EXPECT_NEAR(on_axis(), upright, 0.01); // before the chief ray's slope was taken off: 0.7
 }
 
-// Without aberration the whole field is as the axis is, but for the cells.
+// Without aberration the whole field has the error of the axis, except for that of the cells.
 TEST(FilterError, OfIdealLensesIsThatOfTheAxis) {
     const Instrument instrument = assemble(test::ideal_microscope(0.28));
     const PupilFilter filter(instrument, {.cells = 16});
@@ -81,13 +81,14 @@ TEST(FilterError, OfIdealLensesIsThatOfTheAxis) {
     const double in_corner = largest_filter_error(filter, waves_of(instrument, glm::dvec2(side)), reach).difference;
     EXPECT_LT(on_axis, 0.015);
     EXPECT_NEAR(in_corner, on_axis, 0.004);
-    // Few cells leave more.
+    // With few cells the error is larger.
     EXPECT_GT(largest_filter_error(PupilFilter(instrument, {.cells = 2}), waves_of(instrument, glm::dvec2(0)), reach)
                   .difference,
               0.15);
 }
 
-// A pupil of one wavelength: at s of the cutoff with half a cycle a part at s_0, waves come out as those of 2 s_0 - s.
+// With a pupil of one wavelength, waves at s of the cutoff come out as those of 2 s_0 - s, where a part holds half a
+// cycle at s_0.
 TEST(FilterError, OfPartsThatAreTooCoarse) {
     auto description = test::ideal_microscope(0.28);
     const Instrument instrument = assemble(description);
@@ -106,7 +107,7 @@ TEST(FilterError, OfPartsThatAreTooCoarse) {
     EXPECT_NEAR(coarse.folded_contrast(), expected, 0.02);
 }
 
-// Few frequencies are computed one by one, of a round pupil an eighth of them: the table says the same.
+// Few frequencies are computed one by one, an eighth of them for a round pupil: the table has the same values.
 TEST(FilterError, SingleFrequenciesAreThoseOfTheTable) {
     auto description = test::microscope();
     for (const double decentre : {0.0, 1.0}) {

@@ -12,7 +12,7 @@ namespace {
 
 using test::surface;
 
-// Closed forms in double: a dozen operations, so 1e-13 relative.
+// A closed form in double takes a dozen operations: 1e-13 relative.
 constexpr double rounding = 1e-13;
 
 TEST(FirstOrder, ThickLensFollowsTheLensmaker) {

@@ -48,7 +48,7 @@ struct FieldLight {
     double working_distance = 0; // mm, to the frame that the train is entered in
     double field_radius = 0;     // mm
 
-    // Of the ray in the middle of a box.
+    // Whether the ray in the middle of the box passes the train.
     bool passes_from(const EmissionBox& box) const {
         auto emitted = ray_in(box, {}, {});
         if (!emitted) {

@@ -81,7 +81,8 @@ TEST(GlassCatalog, HasPublishedIndicesToTheLastDigit) {
     EXPECT_NEAR((oil.index(line_e) - 1) / (oil.index(line_f2) - oil.index(line_c2)), 44, 1e-3);
 }
 
-// Of the glasses that assets name, the indices there are Zemax's of the vendors' catalogues of their time.
+// The built-in catalogue has all glasses that the assets name, and the assets' indices are Zemax's of the vendors'
+// catalogues of their time: the independent truth here.
 TEST(GlassCatalog, HasEveryGlassOfTheAssets) {
     const auto glasses = GlassCatalog::builtin();
     std::size_t count = 0;
@@ -191,7 +192,7 @@ TEST(GlassCatalog, AnUnknownGlassIsNamedAndNoOtherSuggested) {
         EXPECT_THAT(message(name), HasSubstr("\"" + std::string(name) + "\""));
         EXPECT_THAT(message(name), ::testing::Not(HasSubstr("Did you mean")));
     }
-    // A code is no glass; what to write is said.
+    // A code is no glass; the message says what to write.
     EXPECT_THAT(message("516640"), HasSubstr("nd = 1.516 and vd = 64.0"));
 }
 
@@ -248,11 +249,12 @@ TEST(GlassCatalog, CataloguesAgreeToAMillionthOfTheIndexWhereTheLensIsUsed) {
     };
     EXPECT_EQ(both(9e-7, "").get("G").index(0.5), 1.5); // of the first by name
     EXPECT_THROW(both(1.1e-6, "").get("G"), InputError);
-    // They agree at one wavelength alone: 0.001 / x - 0.002 is 0 at 0.5 um.
+    // Two catalogues that agree at one wavelength alone are refused unless it is the only one used: their difference
+    // 0.001 / x - 0.002 is 0 at x = 0.5 um.
     const auto crossing = both(-0.002, " 0.001");
     EXPECT_THROW(crossing.find("G"), InputError);
     EXPECT_TRUE(crossing.find("G", {.used = {.minimum_um = 0.5, .maximum_um = 0.5}}));
-    // Where none of both is valid they cannot agree.
+    // Catalogues cannot agree where none of both is valid.
     EXPECT_THROW(both(1e-9, "").find("G", {.used = {.minimum_um = 1, .maximum_um = 2}}), InputError);
 }
 

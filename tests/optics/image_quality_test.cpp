@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-// Closed forms in double: a dozen operations, so 1e-13 relative; lengths to 100 mm.
+// Closed forms in double take a dozen operations, 1e-13 relative, of lengths to 100 mm.
 constexpr double rounding = 1e-11;
 
 TEST(PrincipalPlanes, OfAThickLens) {
@@ -53,7 +53,8 @@ TEST(PrincipalPlanes, BetweenMedia) {
     const std::vector single = {surface(1 / 30.0, 0, water, glass)};
     EXPECT_NEAR(principal_planes(transfer_of_train(single), water, glass).front, 0, rounding);
     EXPECT_NEAR(principal_planes(transfer_of_train(single), water, glass).back, 0, rounding);
-    // Two surfaces, powers a and b, t / n apart: H lies n1 (t / n) b / (a + b - a b t / n) behind the first vertex.
+    // For two surfaces of powers a and b, t / n apart, H lies n1 (t / n) b / (a + b - a b t / n) behind the first
+    // vertex.
     const double a = (glass - water) / 30, b = (1 - glass) / -20.0, reduced = 5 / glass;
     const std::vector lens = {surface(1 / 30.0, 0, water, glass), surface(-1 / 20.0, 5, glass, 1)};
     const double power = a + b - a * b * reduced;
@@ -75,7 +76,7 @@ TEST(StopImages, OfAStopBesideAThinLens) {
         EXPECT_NEAR(exit.distance, 1 / (1 / f - 1 / d), rounding) << d;
         EXPECT_NEAR(exit.magnification, 1 / (1 - d / f), rounding) << d;
     }
-    // Through a plane face, as an object at depth d in water: n d.
+    // Seen from water through a plane face, a stop at the distance d stands at n d.
     const std::vector window = {surface(0, 0, 1.33, 1), surface(0, 10, 1, 1)};
     EXPECT_NEAR(stop_seen_from_front(transfer_to_surface(window, 1), 1.33).distance, 13.3, rounding);
 }
@@ -124,15 +125,15 @@ TEST(PointImage, OfAnIdealMicroscopeIsPerfect) {
             EXPECT_NEAR(wavefront_at(imaging, x, 0).rms, 0, 1e-7) << aperture;
             EXPECT_NEAR(image.centroid.x, -x * image_focal_length / object_focal_length, 1e-11) << aperture;
         }
-        // The wrong twin: a depth of field out of focus, a phase of 2 pi over the cone where NA is low.
+        // The wrong twin is a depth of field out of focus, a phase of 2 pi over the cone where NA is low.
         const double depth = index * 0.55e-3 / (aperture * aperture);
         EXPECT_LT(wavefront_at(imaging, 0, depth).strehl, 0.5) << aperture;
     }
 }
 
 // A height z over focus adds the path n z (1 - cos theta), all but linear in the share s of the cone: Strehl = sinc^2
-// (Born and Wolf, section 8.8.2). What is left out is z NA^4 / 8 lambda of a wave, 1e-3 here. Marechal's
-// exp(-(2 pi sigma)^2) must agree where it is near 1, and only there.
+// (Born and Wolf, section 8.8.2). The rest is z NA^4 / 8 lambda of a wave, 1e-3 here. Marechal's exp(-(2 pi sigma)^2)
+// must agree where it is near 1, and only there.
 TEST(PointImage, DefocusIsASinc) {
     const double aperture = 0.05;
     const Imaging imaging = ideal_microscope(aperture);
@@ -145,7 +146,7 @@ TEST(PointImage, DefocusIsASinc) {
         const auto [rms, strehl] = wavefront_at(imaging, 0, z);
         EXPECT_NEAR(strehl, sinc * sinc, 2e-3) << depths;
         EXPECT_NEAR(rms, std::abs(depths) / 2 / std::sqrt(12), 2e-3 * std::abs(depths)) << depths;
-        // |z| tan(theta) M, RMS over the disc.
+        // The spot is |z| tan(theta) M, as a root mean square over the disc.
         EXPECT_NEAR(image.rms_spot, std::abs(z) * aperture / std::sqrt(2) * 10, 2e-3 * image.rms_spot) << depths;
         const double marechal = std::exp(-std::pow(2 * pi * rms, 2));
         if (std::abs(depths) <= 0.1) {
@@ -153,15 +154,15 @@ TEST(PointImage, DefocusIsASinc) {
         } else if (std::abs(depths) >= 1.5) {
             EXPECT_GT(std::abs(strehl - marechal), 0.01) << depths;
         }
-        // The wrong twin: a tenth more defocus.
+        // The wrong twin has a tenth more defocus.
         if (depths == 0.7) {
             EXPECT_GT(std::abs(wavefront_at(imaging, 0, 1.1 * z).strehl - sinc * sinc), 0.05);
         }
     }
 }
 
-// Exactly, at high aperture: |integral of exp(i k z (1 - cos theta)) over s = sin^2 / NA^2|^2 by a midpoint rule of
-// 20000.
+// At high aperture the truth is |integral of exp(i k z (1 - cos theta)) over s = sin^2 / NA^2|^2, by a midpoint rule of
+// 20000 steps.
 TEST(PointImage, DefocusAtHighAperture) {
     const double aperture = 0.8, z = 1e-3;
     const Imaging imaging = ideal_microscope(aperture);
@@ -177,7 +178,7 @@ TEST(PointImage, DefocusAtHighAperture) {
     EXPECT_LT(exact, 0.9);
 }
 
-// Half the light in focus at one wavelength and half out of it: spot and Strehl are the weighted means.
+// With half the light in focus at one wavelength and half out of it, spot and Strehl are the weighted means.
 TEST(PointImage, OverASpectrum) {
     Imaging imaging = ideal_microscope(0.05);
     // A plate whose index rises with x moves the focus by t (n(x) - 1) / n(x) downwards.
@@ -204,10 +205,10 @@ TEST(PointImage, OverASpectrum) {
     EXPECT_NEAR(together.rms_spot, second.rms_spot / std::sqrt(2), 1e-6 * second.rms_spot);
     const double w1 = 1 / (0.6 * 0.6), w2 = 1 / (0.5 * 0.5);
     EXPECT_NEAR(wavefront_at(imaging, 0, 0, both).strehl, (w1 * one + w2 * other) / (w1 + w2), 1e-9);
-    // t (n - 1) / n = 1/6 mm, by which the object seems raised.
+    // The object seems raised by t (n - 1) / n = 1/6 mm.
     EXPECT_NEAR(least_spot(at_wavelength(imaging, 1), outline), -0.5 / 3, 1e-3 * 0.5 / 3);
     EXPECT_NEAR(best_focus(imaging, -10, outline, std::vector{SpectralNode{1, 0.5, 1}}), -0.5 / 3, 1e-3 * 0.5 / 3);
-    // By their weights in squared wavelengths.
+    // The two foci are weighted by the squares of their wave numbers.
     EXPECT_NEAR(best_focus(imaging, -10, outline, both), w2 / (w1 + w2) * -0.5 / 3, 1e-3 * 0.5 / 3);
 }
 
@@ -230,13 +231,13 @@ TEST(ImageQuality, OfAnIndependentTracer) {
     EXPECT_NEAR(at_edge.strehl, 0.9876344, 1e-4);
     EXPECT_NEAR(quality.edge.centroid.x, -0.638601633, 1e-6);
     EXPECT_NEAR(quality.edge_distortion, 0.638601633 / 0.64 - 1, 2e-6);
-    // Twins that 1e-3 tells apart: the axis for the edge.
+    // The twin that 1e-3 tells apart is the axis for the edge.
     EXPECT_GT(std::abs(quality.edge.rms_spot - quality.axis.rms_spot), 3e-3 * quality.axis.rms_spot);
     EXPECT_GT(std::abs(at_edge.rms - on_axis.rms), 0.01 * on_axis.rms);
 }
 
-// The same reference of the other objectives. The wrong twin is the angle characteristic of the image: 0.0177 waves for
-// the 20x and 0.0129 for the 100x.
+// tests/references/wavefront_reference.py prints the values of the other objectives too. The wrong twin is the angle
+// characteristic of the image: 0.0177 waves for the 20x and 0.0129 for the 100x.
 TEST(ImageQuality, WavefrontsOfAnIndependentTracer) {
     const struct {
         const char* objective;
@@ -266,9 +267,9 @@ TEST_P(Library, IsFiniteAndConsistent) {
                                quality.edge_distortion, quality.corner_distortion}) {
         EXPECT_TRUE(std::isfinite(value));
     }
-    // Two ways to the same: the source that fills the pupil; focal points; paraxial rays from the axis to the pupils'
-    // rims, whose angles go with the magnification; real ones by the sine condition, which these objectives offend by
-    // less than 4 % (and paraxial pupils by 20 % at the highest aperture).
+    // Each figure is found in two ways: by the source that fills the pupil; by focal points; by paraxial rays from the
+    // axis to the pupils' rims, whose angles go with the magnification; and by real rays with the sine condition, which
+    // these objectives offend by less than 4 % (and paraxial pupils by 20 % at the highest aperture).
     EXPECT_NEAR(quality.back_pupil_radius / first_order.pupil_radius_in_source,
                 std::abs(first_order.source_magnification), 1e-9);
     EXPECT_NEAR(quality.objective.front_principal_plane + first_order.working_distance, first_order.efl_objective,
@@ -290,7 +291,7 @@ TEST_P(Library, IsFiniteAndConsistent) {
         const auto [rms, strehl] = wavefront_quality(instrument, image->position);
         EXPECT_GT(strehl, 0.8); // patents of microscope objectives: diffraction-limited
         EXPECT_LE(strehl, 1);
-        // Marechal, to fourth order in 2 pi sigma.
+        // Marechal's formula holds to fourth order in 2 pi sigma.
         const double phase = 2 * pi * rms;
         EXPECT_NEAR(strehl, std::exp(-phase * phase), std::pow(phase, 4));
         EXPECT_NEAR(image->relative_light, 1, 1e-3);
@@ -370,7 +371,7 @@ TEST(Warnings, NameWhatClipsTheCone) {
     EXPECT_LT(quality.corner.relative_light, 0.9);
 }
 
-// No light from the corner: its figures are undefined, not zero, and the axis' stay.
+// If no light comes from the corner, its figures are undefined, not zero, and those of the axis stay.
 TEST(ImageQuality, OfADarkCorner) {
     auto description = test::microscope();
     description.detector_width = 60;

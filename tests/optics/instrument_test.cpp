@@ -30,7 +30,7 @@ std::vector<physics::f64::Surface> illumination_train(const Instrument& instrume
     return {first, first + instrument.constants.illumination_count};
 }
 
-// Of two other programs, with every printed digit. Their sines are for a beam of given diameter; ours come
+// Two other programs print these values, here with every digit. Their sines are for a beam of given diameter; ours come
 // from the semi-diameters, which differ from it by what the tables were rounded or widened.
 TEST(Instrument, FirstOrderOfTheMicroscopes) {
     const auto ten = assemble(test::microscope("10x_0.28"));
@@ -53,7 +53,7 @@ TEST(Instrument, FirstOrderOfTheMicroscopes) {
     EXPECT_NEAR(five.first_order.numerical_aperture, 0.15, 0.025 * 0.15);
 }
 
-// With their nominal stops: 0.05 % is the pupil's spherical aberration at the stop.
+// With the nominal stops the apertures are nominal; 0.05 % is the pupil's spherical aberration at the stop.
 TEST(Instrument, NominalApertures) {
     for (const auto& [name, na] : {std::pair{"20x_0.41", 0.406689448}, std::pair{"50x_0.66", 0.663616025},
                                    std::pair{"100x_0.83", 0.833807602}}) {
@@ -61,7 +61,7 @@ TEST(Instrument, NominalApertures) {
     }
 }
 
-// The marginal ray passes, the next one does not.
+// The marginal ray passes; a ray of slightly larger aperture does not.
 TEST(Instrument, NumericalApertureIsTheLastRayToPass) {
     const auto instrument = assemble(test::microscope());
     const auto train = imaging_train(instrument);
@@ -117,9 +117,9 @@ INSTANTIATE_TEST_SUITE_P(Microscopes, ReferenceRays,
                                            std::pair{"5x_0.15", "scope_obj5x_015_tube200_nikon.csv"}),
                          [](const auto& info) { return info.index == 0 ? "ten" : "five"; });
 
-// Least-squares focus of a hexapolar grid of 20 rings in a collimated beam through the objective backward, as
-// another program has it. Its outermost ring lies on the rim and counts in full, which overweights the
-// margin: the integral over the pupil is 6.55 um instead of 7.98 um for the 10x.
+// Another program takes the least-squares focus of a hexapolar grid of 20 rings in a collimated beam through the
+// objective backward. Its outermost ring lies on the rim and counts in full, which overweights the margin: the integral
+// over the pupil is 6.55 um instead of 7.98 um for the 10x.
 TEST(BestFocus, OfOtherProgramsGrid) {
     struct Row {
         const char* name;
@@ -142,7 +142,7 @@ TEST(BestFocus, OfOtherProgramsGrid) {
             numerator += ring * focal.position.x * slope;
             denominator += ring * slope * slope;
         }
-        // Nine printed decimals of micrometres; the paraxial plane to 1e-9 mm.
+        // The program prints nine decimals of micrometres; the paraxial plane is known to 1e-9 mm.
         EXPECT_NEAR(-numerator / denominator, row.focus, 2e-9) << row.name;
     }
 }
@@ -209,22 +209,22 @@ TEST(LeastSpot, OfRandomLight) {
             }
             const double deviation = -numerator / denominator;
             const double error = std::sqrt(variance) / denominator;
-            // False-positive rate 6e-7 a case.
+            // The false-positive rate is 6e-7 a case.
             EXPECT_LT(std::abs(deviation), 5 * error) << name << " " << field;
             EXPECT_GT(std::abs(deviation + expected), 5 * error) << name << " " << field;
         }
     }
 }
 
-// The figures themselves, by a tracer of a few lines of numpy that shares no code: midpoint rule over 400
-// rings, whose error is below 5e-4 um.
+// The figures are those of a tracer of a few lines of numpy that shares no code: a midpoint rule over 400 rings, whose
+// error is below 5e-4 um.
 TEST(LeastSpot, OfAnIndependentTracer) {
     EXPECT_NEAR(assemble(test::microscope("10x_0.28")).first_order.least_spot_offset, 6.685796e-3, 5e-7);
     EXPECT_NEAR(assemble(test::microscope("5x_0.15")).first_order.least_spot_offset, -54.978192e-3, 5e-7);
 }
 
-// tests/references/wavefront_reference.py, which shares no code, prints these. Its pupil is that of the light that
-// reaches the detector's middle, here that of a point of the paraxial plane: 3 nm.
+// tests/references/wavefront_reference.py, which shares no code, prints these values. Its pupil is that of the light
+// that reaches the detector's middle, here that of a point of the paraxial plane: they differ by 3 nm.
 TEST(BestFocus, OfAnIndependentTracer) {
     const auto focus = [](const char* objective) {
         return assemble(test::microscope(objective)).first_order.best_focus_offset;
@@ -236,8 +236,8 @@ TEST(BestFocus, OfAnIndependentTracer) {
     EXPECT_NEAR(focus("100x_0.83"), -0.222717e-3, 5e-6);
 }
 
-// What the wavefront's polynomials over the traced pupil say, in the field's corner, too, and of several wavelengths:
-// the mean square of W without piston and tilt is least there.
+// Best focus is where the mean square of W without piston and tilt is least, by the wavefront's polynomials over the
+// traced pupil: on the axis and in the field's corner, for several wavelengths together.
 TEST(BestFocus, IsWhereTheWavefrontVariesLeast) {
     auto description = test::microscope("5x_0.15");
     description.spectrum = Spectrum::lines({0.48, 0.59, 0.65}, {1, 2, 1});
@@ -281,13 +281,13 @@ TEST(Gate, HoldsAllThatIsDetected) {
         int outside = 0;
         int outside_narrow = 0;
         for (int i = 0; i < 100000; ++i) {
-            // Near the pupil's rim, where it matters.
+            // Rays are near the pupil's rim, where the gate matters.
             const double sine = reach * std::sqrt(1 - 0.4 * std::abs(uniform(generator)));
             const double azimuth = pi * uniform(generator);
             const glm::dvec3 direction(sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine));
             const double top = 0.2 * uniform(generator); // of the top plane, above best focus
             const double below = 0.05 * std::abs(uniform(generator));
-            // Aimed at the plane of focus, so that it may be detected.
+            // Rays are aimed at the plane of focus, so that they may be detected.
             const glm::dvec3 aim(field * uniform(generator), field * uniform(generator), 0);
             const glm::dvec3 position = aim + direction * ((top - below) / direction.z);
             const auto result =
@@ -358,7 +358,7 @@ TEST(Koehler, ImagesTheSourceIntoThePupil) {
         }
         train.resize(stop + 1);
         const double source_distance = instrument.constants.source_distance;
-        // Paraxial: aberrations go with the cube of 1e-4 (and of the height, which is kept small too).
+        // Rays are paraxial: aberrations go with the cube of 1e-4 (and of the height, which is kept small too).
         const double small = 1e-4;
         const auto from_centre = test::trace(train, {0, 0, -source_distance}, {small, 0, 1});
         EXPECT_LT(std::abs(from_centre.ray.position.x), 1e-7) << name;
@@ -397,8 +397,8 @@ TEST(Koehler, ImagesTheFieldStopOntoTheSpecimen) {
             ++count;
         }
     }
-    // Five standard errors of the root (0.29 / sqrt(40000) of its square) and the half per cent by which the
-    // sine condition bends the field; the wrong twin is a field lens of 155 mm.
+    // The tolerance is five standard errors of the root (0.29 / sqrt(40000) of its square) and the half per cent by
+    // which the sine condition bends the field; the wrong twin is a field lens of 155 mm.
     const double tolerance = (0.5 * 5 * 0.58 / std::sqrt(40000.0) + 0.005) * expected;
     EXPECT_NEAR(std::sqrt(2 * sum / count), expected, tolerance);
     EXPECT_GT(expected - expected * 149.97575906 / 155, tolerance);

@@ -24,7 +24,7 @@ InstrumentDescription koehler_20x() {
     return description;
 }
 
-// Light that arrives in cells of equal area: rings about the axis, cut into sectors.
+// The counts of light that arrives in cells of equal area: rings about the axis, cut into sectors.
 std::vector<double> arrivals(const Instrument& instrument, std::uint32_t paths) {
     constexpr int rings = 10;
     constexpr int sectors = 8;
@@ -47,7 +47,7 @@ std::vector<double> arrivals(const Instrument& instrument, std::uint32_t paths) 
     return cells;
 }
 
-// p of the counts for an irradiance that falls off by `fall` to the rim, with the square of the radius.
+// The p-value of the counts for an irradiance that falls off by `fall` to the rim, with the square of the radius.
 double p_of(const std::vector<double>& cells, double fall) {
     std::vector<double> expected;
     double sum = 0;
@@ -63,8 +63,8 @@ double p_of(const std::vector<double>& cells, double fall) {
     return test::chi_square_p(cells, expected);
 }
 
-// Irradiance at a point of the specimen over the radiance: the area, in direction cosines, of the light that leads back
-// to the source. Radiance is the same all along a ray, so this needs no sampling of the source.
+// The irradiance at a point of the specimen over the radiance: the area, in direction cosines, of the light that leads
+// back to the source. Radiance is the same all along a ray, so this needs no sampling of the source.
 double irradiance(const Instrument& instrument, double source_radius, double x) {
     const auto& constants = instrument.constants;
     std::vector<physics::f64::Surface> backward;
@@ -109,7 +109,7 @@ TEST(KoehlerField, IsUniformWithinTheStatisticalError) {
     EXPECT_LT(p_of(cells, 0.15), false_positive_rate); // wrong twin: less light at the rim
 }
 
-// What the lenses themselves leave: the pupil's aberrations over the field.
+// The irradiance of the real lenses varies over the field by the pupil's aberrations alone.
 TEST(KoehlerField, IsUniformByTheRadianceThatReachesIt) {
     const auto description = koehler_20x();
     const auto instrument = assemble(description);
@@ -118,15 +118,16 @@ TEST(KoehlerField, IsUniformByTheRadianceThatReachesIt) {
     // its pupil is seen the other way through: they differ by its aberration.
     EXPECT_NEAR(middle / (pi * std::pow(instrument.first_order.numerical_aperture, 2)), 1, 2e-3);
     for (const double share : {0.35, 0.7, 1.0}) {
-        // Less than the statistics of any image could show.
+        // The tolerance is less than the statistics of any image could show.
         EXPECT_NEAR(irradiance(instrument, description.source.radius, share * field_radius) / middle, 1, 1e-4) << share;
     }
     // Wrong twin: a source that does not fill the pupil lights less.
     EXPECT_LT(irradiance(instrument, 0.6, 0) / middle, 0.8);
 }
 
-// Fourier lenses one after another (physics/ideal_lens.glsl): light from s at the source in the direction u crosses the
-// field stop at f_condenser u, the pupil at -(f_field / f_condenser) s, and meets the specimen at the stop's image.
+// The lenses are Fourier lenses one after another (physics/ideal_lens.glsl): light from s at the source in the
+// direction u crosses the field stop at f_condenser u, the pupil at -(f_field / f_condenser) s, and meets the specimen
+// at the stop's image.
 TEST(KoehlerField, IdealLensesMapPlacesToDirectionsAndBack) {
     constexpr double condenser = 30, field_lens = 120, objective = 20, aperture = 0.3;
     auto description = test::ideal_microscope(aperture);

@@ -1,7 +1,7 @@
-// What an instrument takes for the exit pupil, the source as the specimen sees it, and the gate holds all light of wide
-// spectra, of small sources, of large fields and of parts beside their places: no random ray, and none that an
-// adversary makes of them, is outside. Wrong twin: the same instrument at its reference wavelength alone, which loses
-// light.
+// The bounds that an instrument takes for the exit pupil, for the source as the specimen sees it, and for the gate hold
+// all light of wide spectra, of small sources, of large fields and of parts beside their places: no random ray, and
+// none that an adversary makes of them, is outside. The wrong twin is the same instrument at its reference wavelength
+// alone, which loses light.
 #include "optics/aim/light_hull.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -31,7 +31,7 @@ struct Named {
     InstrumentDescription description;
 };
 
-// The stop stands `behind` mm behind the lens, or in front of it where that is negative.
+// A singlet whose stop stands `behind` mm behind the lens, or in front of it where that is negative.
 Prescription singlet(const char* glass, double radius, double semi_diameter, double behind) {
     const std::string stop =
         "[[surface]]\nsemi_diameter_mm = " + std::to_string(semi_diameter) + "\nrole = \"aperture stop\"\n";
@@ -42,7 +42,7 @@ Prescription singlet(const char* glass, double radius, double semi_diameter, dou
     return parse_prescription(head + (behind < 0 ? stop + gap + lens : lens + gap + stop), "singlet.toml");
 }
 
-// The condenser of another glass, with its curvature and distance for the same focal length.
+// Replaces the condenser by one of another glass, with its curvature and distance for the same focal length.
 void use_condenser_of(InstrumentDescription& description, const char* glass) {
     constexpr double focal_length = 26;
     const auto glasses = GlassCatalog::builtin();
@@ -108,7 +108,7 @@ class Draws {
 using Coordinates = std::array<double, 6>;
 using Measure = std::function<double(const Coordinates&)>; // 0: it does not pass
 
-// The greatest that random rays have, and that steps of ever smaller size from the greatest lead to.
+// The greatest value that random rays have, and that steps of ever smaller size from the greatest lead to.
 double greatest_by_adversary(const Measure& measure, Draws& draws) {
     Coordinates best{};
     double greatest = 0;
@@ -139,7 +139,7 @@ double greatest_by_adversary(const Measure& measure, Draws& draws) {
     return greatest;
 }
 
-// Radii that hold all light, in slope.
+// The radii, as slopes, of the discs that hold all light.
 struct Radii {
     double pupil = 0;
     double source = 0;
@@ -167,11 +167,13 @@ class TurnedLight {
         const glm::dvec2 place = seen.end + (instrument_.front_vertex_height - height(at)) * seen.end_slope;
         return seen.passes ? glm::length(instrument_.constants.gate_position * place - seen.end_slope) : 0;
     }
-    // From places that the detector sees.
+    // The distance from the middle at which light from a place that the detector sees crosses the source's disc; 0 if
+    // none comes through.
     double source(const Coordinates& at) const {
         const auto& optics = turned_.optics;
         const double plane = height(at);
-        // As seen by a ray of the detector; the turned frame is the specimen's turned half a turn about x.
+        // The place is one that a ray of the detector sees; the turned frame is the specimen's turned half a turn about
+        // x.
         const Seen seen = seen_by_detector({at[0], at[1], 0.5, 0.5, at[4], at[5]});
         const glm::dvec2 turned_place = seen.end + (instrument_.front_vertex_height - plane) * seen.end_slope;
         const glm::dvec2 place = {turned_place.x, -turned_place.y};
@@ -248,7 +250,8 @@ TEST(LightHull, HoldsAllLightOfWideSpectra) {
         EXPECT_LE(pupil, radii.pupil);
         EXPECT_LE(source, radii.source);
         EXPECT_LE(gate, radii.gate);
-        // Hardly larger than it must be. The field of the source's light is a circle about all that is seen.
+        // The bounds are hardly larger than they must be. The field of the source's light is a circle about all that is
+        // seen.
         EXPECT_GT(pupil, 0.93 * radii.pupil);
         EXPECT_GT(source, 0.8 * radii.source);
         EXPECT_GT(gate, 0.85 * radii.gate);
@@ -256,14 +259,14 @@ TEST(LightHull, HoldsAllLightOfWideSpectra) {
         too_small_sources += source > twin.source;
         too_small_gates += gate > twin.gate;
     }
-    // By 1.5 % of the pupil's radius, 2 to 27 % of the source's, and 3 to 5 % of the gate's.
+    // The twins are too small by 1.5 % of the pupil's radius, 2 to 27 % of the source's, and 3 to 5 % of the gate's.
     EXPECT_GE(too_small_pupils, 1);
     EXPECT_GE(too_small_sources, 4);
     EXPECT_GE(too_small_gates, 2);
 }
 
-// Of a stop alone the steepest light goes from one rim to the other; the farthest that it comes, beyond, lies on the
-// same line. A stop beside the axis is farther from one side of the disc.
+// The steepest light through a stop alone goes from one rim of the disc to the other rim of the stop, and the farthest
+// place that it comes to lies on the same line. A stop beside the axis is farther from one side of the disc.
 TEST(LightHull, IsThatOfAStop) {
     for (const double aside : {0.0, 0.7}) {
         SCOPED_TRACE(aside);

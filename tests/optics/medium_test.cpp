@@ -27,7 +27,7 @@ TEST(Medium, IsCauchysFormulaThroughItsPoints) {
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(medium.index(wavelengths_um[i]), indices[i]);
     }
-    // Rounding of indices near 1.5, amplified by a few in the range.
+    // The tolerance is for rounding of indices near 1.5, amplified by a few in the range.
     for (const double um : {0.4785, 0.52, 0.6, 0.663}) {
         EXPECT_NEAR(medium.index(um), cauchy(um), 1e-14) << um;
     }
@@ -62,7 +62,7 @@ TEST(Medium, OfThreeLinesIsCauchysFormulaBetweenThem) {
     EXPECT_THROW(medium.index(0.721), InputError);
 }
 
-// SCHOTT's data sheets: h, g and r of two glasses of the normal line.
+// SCHOTT's data sheets give h, g and r of two glasses of the normal line.
 TEST(Medium, OfThreeLinesHasTheIndicesOfDataSheetsBeyondThem) {
     constexpr double printed = 0.5e-5; // half of the last digit
     const struct {
@@ -111,7 +111,7 @@ TEST(Medium, OfThreeLinesIsAsNearToGlassesAsItSays) {
         }
     }
     EXPECT_GT(compared, 250);
-    // 0.95, less a little under two standard errors (0.03) of 55 glasses, whose wavelengths go together.
+    // The share is 0.95, less a little under two standard errors (0.03) of 55 glasses, whose wavelengths go together.
     EXPECT_GT(near, 0.9 * compared);
     EXPECT_LT(near_by_cauchy, 0.7 * compared);
 }
@@ -124,8 +124,7 @@ TEST(Medium, TakesTheThreeNearestOfMore) {
     EXPECT_EQ(Medium::air().index(10.6), 1.0);
 }
 
-// Zemax's indices at 0.4861327, 0.5875618 and 0.6562725 um, as its reports print them for LensLibrary's
-// lenses.
+// Zemax's reports for LensLibrary's lenses print these indices at 0.4861327, 0.5875618 and 0.6562725 um.
 TEST(Medium, ModelGlassHasZemaxsIndices) {
     const struct {
         double nd, vd;
@@ -142,7 +141,8 @@ TEST(Medium, ModelGlassHasZemaxsIndices) {
     for (const auto& row : rows) {
         const Medium glass = Medium::model("model", row.nd, row.vd);
         for (std::size_t i = 0; i < 3; ++i) {
-            // Half of the last digit printed, and the rounding of the six constants fitted to such digits.
+            // The tolerance is half of the last digit printed, and the rounding of the six constants fitted to such
+            // digits.
             EXPECT_NEAR(glass.index(std::array{0.4861327, 0.5875618, 0.6562725}[i]), row.indices[i], 8e-11);
         }
     }
@@ -150,9 +150,9 @@ TEST(Medium, ModelGlassHasZemaxsIndices) {
     EXPECT_THROW(Medium::model("model", 1.5, 60).index(1.11), InputError);
 }
 
-// Away from F, d and C, by SCHOTT's published indices of two glasses of the normal line. Conrady's formula
-// with a partial dispersion linear in vd is good to a few times 1e-5 between g and r; one that forgets vd
-// there is not.
+// Away from F, d and C the truth is SCHOTT's published indices of two glasses of the normal line. Conrady's formula
+// with a partial dispersion linear in vd is good to a few times 1e-5 between g and r; a formula that forgets vd there
+// is not.
 TEST(Medium, ModelGlassIsNearNormalGlasses) {
     const Medium n_bk7 = Medium::model("N-BK7", 1.5168, 64.17);
     EXPECT_NEAR(n_bk7.index(0.435835), 1.52668, 1e-4);
@@ -172,8 +172,8 @@ struct Evaluation {
     bool squared;
 };
 
-// Coefficients chosen so that every term is a small number at 2 um (x^2 = 4) or, for Conrady's, at 4 um
-// (x^3.5 = 128).
+// Coefficients are chosen so that every term is a small number at 2 um (x^2 = 4) or, for Conrady's, at 4 um (x^3.5 =
+// 128).
 const std::vector<Evaluation>& evaluations() {
     using enum DispersionFormula;
     constexpr double l = 4 - 0.028; // Herzberger's L is its reciprocal

@@ -34,7 +34,7 @@ inline optics::InstrumentDescription microscope(const std::string& objective = "
     return description;
 }
 
-// The same with a field of 0.8 mm, as the chain of the paper has.
+// The demo's microscope with a field of 0.8 mm, as the chain of the paper has.
 inline optics::InstrumentDescription wide_microscope() {
     auto description = microscope();
     description.detector_width = 8;
@@ -42,7 +42,7 @@ inline optics::InstrumentDescription wide_microscope() {
     return description;
 }
 
-// The same with lenses without aberrations, f = 20 and 200 mm.
+// The demo's microscope with lenses without aberrations, f = 20 and 200 mm.
 inline optics::InstrumentDescription ideal_microscope(double aperture) {
     auto description = microscope();
     description.spectrum = optics::Spectrum::line(0.55);
@@ -68,7 +68,7 @@ inline std::vector<std::vector<double>> read_rows(const std::filesystem::path& f
     return rows;
 }
 
-// One surface in air or glass, for closed forms.
+// A surface between two media, for closed forms.
 inline physics::f64::Surface surface(double curvature, double distance, double index_before, double index_after,
                                      double conic = 0) {
     physics::f64::Surface result{};
@@ -81,7 +81,7 @@ inline physics::f64::Surface surface(double curvature, double distance, double i
     return result;
 }
 
-// The same of a prescription.
+// A surface of a prescription, for closed forms.
 inline optics::PrescribedSurface prescribed(double curvature, double thickness, const optics::Medium& after,
                                             std::vector<optics::CoordinateBreak> breaks = {}) {
     optics::PrescribedSurface result;

@@ -33,7 +33,7 @@ TEST(Quadrature, OfGaussAndLegendre) {
     }
 }
 
-// Hopkins' table (1955) is paraxial: a low aperture's. W20 over the pupil's rim is a height of 2 W20 / NA^2.
+// Hopkins' table (1955) is paraxial, of a low aperture. W20 over the pupil's rim is a height of 2 W20 / NA^2.
 TEST(Transfer, OfHopkinsDefocusedPupil) {
     constexpr double aperture = 0.01;
     const Wavefront focused(assemble(test::ideal_microscope(aperture)),
@@ -60,7 +60,7 @@ TEST(Transfer, OfHopkinsDefocusedPupil) {
     }
 }
 
-// H of the scalar Debye integral at z = lambda / (2 NA^2), and the Strehl ratio there.
+// The contrast H of the scalar Debye integral at z = lambda / (2 NA^2), and the Strehl ratio there.
 struct DebyeFigures {
     double aperture, quarter, half, three_quarters, strehl;
 };
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Apertures, Debye,
                                            DebyeFigures{0.66, 0.548, 0.263, 0.114, 0.761},
                                            DebyeFigures{0.83, 0.521, 0.240, 0.105, 0.711}));
 
-// Airy's: rings at the zeros of J1, 3.8317, 7.0156, 10.1735, and the light within.
+// Airy's pattern has rings at the zeros of J1, 3.8317, 7.0156, 10.1735, and known light within them.
 TEST(PointSpread, OfAnIdealLensIsAirys) {
     for (const double aperture : {0.05, 0.8}) {
         const double unit = wavelength / (2 * pi * aperture);
@@ -103,13 +103,13 @@ TEST(PointSpread, OfAnIdealLensIsAirys) {
         EXPECT_NEAR(spread.value({0, 0}), pi * aperture * aperture / (wavelength * wavelength),
                     1e-6 * spread.value({0, 0}));
     }
-    // Paraxial, a quarter of a wave at the rim: (8 / pi^2).
+    // Paraxially, a quarter of a wave at the rim leaves a Strehl ratio of 8 / pi^2.
     const double z = 0.5 * wavelength / 1e-4;
     EXPECT_NEAR(PointWaves(assemble(test::ideal_microscope(0.01))).at_height(z).point_spread(1e-2).strehl(),
                 8 / (pi * pi), 1e-4);
 }
 
-// The point spread's spectrum is the transfer function: two integrals of the same pupil, here with coma, in a corner of
+// The point spread's spectrum is the transfer function: two integrals over one pupil, here with coma, in a corner of
 // the field and out of focus.
 TEST(PointSpread, HasTheTransferFunctionAsItsSpectrum) {
     const Instrument instrument = assemble(test::microscope("20x_0.41"));
@@ -117,7 +117,7 @@ TEST(PointSpread, HasTheTransferFunctionAsItsSpectrum) {
     const PointWaves image = PointWaves(instrument, {edge, -edge}).at_height(-1e-3);
     const double reach = 10e-3;
     const PointSpread spread = image.point_spread(reach);
-    // What lands beyond 14 of the pattern's rings is missing.
+    // The quadrature ends at 14 of the pattern's rings: light that lands beyond is missing.
     const glm::dvec2 frequency(0.3 * image.cutoff(), 0.2 * image.cutoff());
     std::complex<double> sum = 0;
     constexpr int rings = 48;
@@ -134,8 +134,8 @@ TEST(PointSpread, HasTheTransferFunctionAsItsSpectrum) {
     EXPECT_GT(std::abs(image.transfer(frequency)), 0.1);
 }
 
-// tests/references/wavefront_reference.py, which shares no code, prints these, at its least variance: 5.961326 um over
-// the paraxial plane for the 10x, -0.222717 um for the 100x.
+// tests/references/wavefront_reference.py, which shares no code, prints these values at its least variance: 5.961326 um
+// over the paraxial plane for the 10x, -0.222717 um for the 100x.
 TEST(PointWaves, OfAnIndependentTracer) {
     struct Figures {
         const char* objective;
@@ -173,8 +173,9 @@ TEST(PointWaves, OfAnIndependentTracer) {
     }
 }
 
-// By the same script: where gratings of these periods have their highest contrast, over the paraxial plane. Their mean
-// is about the plane of least variance, 5.96 um for the 10x; the rays' least spot is 0.5 to 1 um off.
+// The script of OfAnIndependentTracer prints where gratings of these periods have their highest contrast, over the
+// paraxial plane. Their mean is about the plane of least variance, 5.96 um for the 10x; the rays' least spot is 0.5 to
+// 1 um off.
 TEST(PointWaves, HasItsBestContrastWhereAnIndependentTracerHasIt) {
     struct Highest {
         const char* objective;
@@ -197,7 +198,7 @@ TEST(PointWaves, HasItsBestContrastWhereAnIndependentTracerHasIt) {
     }
 }
 
-// Z4 = sqrt(3) (2 rho^2 - 1), Z5 = sqrt(6) rho^2 sin 2 theta, ... of Noll's table I.
+// The order is that of Noll's table I: Z4 = sqrt(3) (2 rho^2 - 1), Z5 = sqrt(6) rho^2 sin 2 theta, ...
 TEST(Zernike, InNollsOrder) {
     const glm::dvec2 at(0.3, 0.5);
     const double rho = glm::length(at), theta = std::atan2(at.y, at.x);

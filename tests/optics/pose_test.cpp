@@ -17,7 +17,7 @@ void expect_near(const glm::dvec3& found, const glm::dvec3& expected, double tol
     EXPECT_NEAR(found.z, expected.z, tolerance);
 }
 
-// The sentence of prescription.hpp: positive tilts turn z towards -y, z towards x, x towards y.
+// By the sentence of prescription.hpp, positive tilts turn z towards -y, z towards x, x towards y.
 TEST(Pose, TiltsRightHanded) {
     const double c = std::cos(angle);
     const double s = std::sin(angle);
@@ -29,7 +29,7 @@ TEST(Pose, TiltsRightHanded) {
     expect_near(Pose{}.turned({.tilt_z = angle}).axes[1], {-s, c, 0});
 }
 
-// About the new axes: the second turn leaves the axis that the first has brought, not the first frame's.
+// Turns are about the new axes: the second turn leaves the axis that the first has brought, not the first frame's.
 TEST(Pose, TiltsAboutTheNewAxesInOrder) {
     const CoordinateBreak change{
         .decentre_x = 1, .decentre_y = 2, .tilt_x = 0.2, .tilt_y = 0.4, .tilt_z = 0.7, .thickness = 5};
@@ -52,7 +52,7 @@ TEST(Pose, TiltsAboutTheNewAxesInOrder) {
     expect_near(tilted.origin, tilted.axes * glm::dvec3(1, 2, 0));
 }
 
-// The same numbers with their signs changed, the other way round, bring the frame back.
+// A break of the same numbers with their signs changed and in reversed order brings the frame back.
 TEST(Pose, IsRestoredByTheReturnBreak) {
     const Pose start = Pose{{3, -1, 7}}.turned({.tilt_x = 0.5, .tilt_y = -0.2});
     const CoordinateBreak change{.decentre_x = 1, .decentre_y = 2, .tilt_x = 0.2, .tilt_y = 0.4, .tilt_z = 0.7};

@@ -24,7 +24,7 @@ std::vector<PlacedSurface> placed(const Prescription& lens) {
     return place_prescription(lens, Spectrum::line(test::d_line_um), {}, {}, end);
 }
 
-// The surfaces and their frames.
+// Surfaces and their frames come back to the bit.
 TEST(Prescription, ReversedTwiceIsItself) {
     const auto lens = placed(test::microscope().illumination);
     const auto once = reversed(lens);
@@ -56,7 +56,7 @@ std::vector<physics::f64::Surface> surfaces_of(const Prescription& lens) {
     return train;
 }
 
-// Focal lengths at the d line, as two other programs print them (nine decimals).
+// The truth is the focal lengths at the d line, as two other programs print them (nine decimals).
 TEST(Prescription, AssetsHaveTheirFocalLengths) {
     struct Row {
         const char* folder;
@@ -64,7 +64,7 @@ TEST(Prescription, AssetsHaveTheirFocalLengths) {
         double efl;
         double bfd;
     };
-    // Of objectives bfd is on the side of the specimen: the front focal distance in imaging order.
+    // The bfd of an objective is on the side of the specimen: the front focal distance in imaging order.
     for (const Row& row : {Row{"objectives", "5x_0.15", 39.999999808, 65.90129633},
                            {"objectives", "10x_0.28", 20.000007181, 16.144167633},
                            {"objectives", "20x_0.41", 10.000000444, 7.383296607},
@@ -86,14 +86,14 @@ TEST(Prescription, AssetsHaveTheirFocalLengths) {
     }
 }
 
-// Conic and asphere, against rays of two other programs (double precision).
+// Rays of two other programs (double precision) are the truth for conic and asphere.
 TEST(Prescription, CondenserAgreesWithReferenceRays) {
     const auto folder = test::source_folder() / "tests" / "data" / "rays";
     const auto in = test::read_rows(folder / "condenser_acl2520.in.csv");
     const auto out = test::read_rows(folder / "condenser_acl2520.out.csv");
     ASSERT_EQ(in.size(), out.size());
     ASSERT_GE(in.size(), 500u);
-    // Backward: collimated light comes in, the source's plane is the focal plane.
+    // The condenser is passed backward: collimated light comes in, the source's plane is the focal plane.
     auto part = reversed(placed(load_prescription("condenser_acl2520", "illuminators", test::source_folder())));
     link(part, part.front().pose);
     auto train = surfaces_of(part);
@@ -147,7 +147,7 @@ class WrittenPrescription : public ::testing::Test {
     void write(const std::filesystem::path& file, const std::string& text) const {
         std::ofstream(folder_ / file) << text;
     }
-    // What is wrong with a lens.toml of this text.
+    // The problem that is reported for a lens.toml of this text.
     InputProblem problem_of(const std::string& text) const {
         write("lens.toml", "source = \"a test\"\nlicence = \"none\"\n" + text);
         try {
@@ -264,7 +264,7 @@ TEST(ParsedPrescription, MediaHaveEveryForm) {
     }
 }
 
-// Its own media first, then the user's catalogues, then the built-in table.
+// A medium is looked for among the lens's own media first, then in the user's catalogues, then in the built-in table.
 TEST(ParsedPrescription, MediaAreLookedForFromTheNearest) {
     const std::string text = "source = \"s\"\nlicence = \"l\"\n[[surface]]\nmedium = \"N-BK7\"\n";
     const auto index = [](const std::string& lens, const GlassCatalog& glasses) {

@@ -18,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// Equal bits, but zeros of either sign are one.
+// Values are the same if their bits are, or if both are zeros of either sign.
 void expect_same(double a, double b) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(a + 0.0), std::bit_cast<std::uint64_t>(b + 0.0)) << a << " " << b;
 }
@@ -83,7 +83,7 @@ TEST(PrescriptionWriter, AssetsReadBackToTheSameBits) {
     }
 }
 
-// Whatever number a prescription holds. Tilts are those of some degrees: no other one comes from a file.
+// A prescription may hold any numbers. Tilts are those of some degrees: no other one comes from a file.
 TEST(PrescriptionWriter, AnyNumbersReadBackToTheSameBits) {
     std::mt19937_64 random(20261121);
     std::uniform_real_distribution<double> mantissa(-10, 10);
@@ -124,7 +124,7 @@ TEST(PrescriptionWriter, AnyNumbersReadBackToTheSameBits) {
     expect_same(read_back(lens), lens);
 }
 
-// Every power that an ideal lens of a focal length has.
+// An ideal lens has any power that a focal length gives.
 TEST(PrescriptionWriter, IdealLensesReadBackToTheSameBits) {
     std::mt19937_64 random(20261122);
     std::uniform_real_distribution<double> focal_length(-300, 300);

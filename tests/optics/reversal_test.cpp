@@ -44,7 +44,7 @@ std::vector<Pose> vertices_of(const Prescription& lens) {
     return vertices;
 }
 
-// `inside`, given in the frame that `outside` is given in, as `outside` sees it.
+// The pose of `inside`, given in the frame that `outside` is given in, as `outside` sees it.
 Pose seen_from(const Pose& outside, const Pose& inside) {
     const glm::dmat3 back = glm::transpose(outside.axes);
     return {back * (inside.origin - outside.origin), back * inside.axes};

@@ -50,7 +50,7 @@ std::vector<double> counts(const std::vector<double>& wavelengths, double low, d
     return result;
 }
 
-// What a cumulative distribution says of the same.
+// The expected counts in the same cells, by a cumulative distribution.
 std::vector<double> expected(const std::function<double(double)>& cumulative, double low, double high, int cells) {
     std::vector<double> result = {draws_made * cumulative(low)};
     for (int i = 0; i < cells; ++i) {
@@ -72,7 +72,7 @@ TEST(Spectrum, DrawsLinesByTheirWeights) {
         ASSERT_NE(*nearest, 0.5780); // has no weight
         seen[*nearest == 0.4358 ? 0 : *nearest == 0.5461 ? 1 : 2] += 1;
     }
-    // Three cells: the tail of two degrees of freedom is exp(-chi^2 / 2).
+    // With three cells the tail of two degrees of freedom is exp(-chi^2 / 2).
     const auto p = [&](const std::vector<double>& shares) {
         double chi_square = 0;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -101,7 +101,7 @@ TEST(Spectrum, DrawsAGaussian) {
         variance += (wavelength - mean) * (wavelength - mean) / draws_made;
     }
     const double truncated = 1 - 8 * std::exp(-8.0) / std::sqrt(2 * pi) + 1.0 / (6 * 256);
-    // Four standard errors: 6e-5.
+    // The bound is four standard errors: 6e-5.
     EXPECT_LT(std::abs(mean - 0.53), 4 * sigma / std::sqrt(draws_made));
     EXPECT_LT(std::abs(std::sqrt(variance / truncated) / sigma - 1), 4 / std::sqrt(2.0 * draws_made));
     EXPECT_EQ(spectrum.reference_um, 0.53);
@@ -186,7 +186,8 @@ TEST(Spectrum, RefusesWhatIsNone) {
     EXPECT_THROW(Spectrum::table(ascending, many), InputError);
 }
 
-// Largest difference of the polynomial from the catalogue's formula over the spectrum, and of its linear part alone.
+// The largest difference of the polynomial from the catalogue's formula over the spectrum, and that of its linear part
+// alone.
 struct Deviation {
     double whole = 0;
     double linear = 0;
@@ -219,8 +220,8 @@ TEST(SpectralIndex, AgreesWithTheFormulaOverTheSpectrum) {
     EXPECT_EQ(deviation("N-BK7", Spectrum::line(0.55)).whole, 0);
 }
 
-// Back focal distance of a thick lens by the lensmaker's equation with the catalogue's indices:
-// f (1 - (n - 1) t c1 / n) with 1 / f = (n - 1) (c1 - c2 + (n - 1) t c1 c2 / n).
+// The truth is the back focal distance of a thick lens by the lensmaker's equation with the catalogue's indices: f (1 -
+// (n - 1) t c1 / n) with 1 / f = (n - 1) (c1 - c2 + (n - 1) t c1 c2 / n).
 TEST(Dispersion, ShiftsTheFocusOfASinglet) {
     const Medium glass = GlassCatalog::builtin().get("N-BK7");
     const double c1 = 1 / 51.68;
@@ -241,7 +242,7 @@ TEST(Dispersion, ShiftsTheFocusOfASinglet) {
     const auto train = surfaces_of(placed);
     const auto traced = [&](double wavelength) {
         const double x = (1 / (wavelength * wavelength) - spectrum.centre()) / spectrum.half_width();
-        // Spherical aberration is of the height squared over the focal length: 1e-9 mm.
+        // Spherical aberration goes with the height squared over the focal length: 1e-9 mm.
         constexpr double height = 1e-4;
         const auto result =
             trace_through(train, {.position = {height, 0, -1}, .direction = {0, 0, 1}, .path_length = 0}, 0, x);

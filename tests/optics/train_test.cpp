@@ -40,8 +40,8 @@ std::vector<physics::f64::Surface> linked(std::vector<PlacedSurface> part) {
     return surfaces_of(part);
 }
 
-// What tests/references/trace_decentred_doublet.py prints: x, y on the plane z = 150 mm, direction cosines, optical
-// path.
+// The expected values are printed by tests/references/trace_decentred_doublet.py: x, y on the plane z = 150 mm,
+// direction cosines, optical path.
 TEST(Train, DecentredDoubletAgreesWithAnIndependentTracer) {
     struct Row {
         glm::dvec3 position;
@@ -99,7 +99,7 @@ TEST(Train, DecentredDoubletAgreesWithAnIndependentTracer) {
     EXPECT_GT(worst(twin).first, 1e-5);
 }
 
-// One surface, tilted and decentred: the ray brought into its frame by hand.
+// A ray is brought into the frame of a tilted and decentred surface by hand.
 TEST(Train, LinkBringsARayIntoEachSurfacesFrame) {
     const Pose pose = Pose{{0.4, -0.3, 12}}.turned({.tilt_x = 0.2, .tilt_y = -0.1, .tilt_z = 0.5});
     const Pose entry = Pose{{-0.2, 0.1, 3}}.turned({.tilt_y = 0.07});
@@ -119,7 +119,7 @@ TEST(Train, LinkBringsARayIntoEachSurfacesFrame) {
     EXPECT_LT(glm::length(through.ray.direction - by_hand.ray.direction), 1e-15);
     EXPECT_NEAR(through.ray.path_length, by_hand.ray.path_length, 1e-14);
 
-    // Only a step along z is none; a train in line carries no rounding of its transfers.
+    // A step along z alone is no displacement; a train in line carries no rounding of its transfers.
     Pose end;
     auto straight = place_prescription(load_prescription("10x_0.28", "objectives", test::source_folder()),
                                        Spectrum::line(test::d_line_um), {}, Pose{{0, 0, 1.0 / 3}}, end);
@@ -163,7 +163,7 @@ TEST(Train, MarksItsInterfaces) {
     EXPECT_EQ(dummy_plane({}, Pose{}, "").surface.flags, 0u);
 }
 
-// Five plates of N-BK7: each of ten surfaces lets 1 - ((n - 1) / (n + 1))^2 pass.
+// Each of the ten surfaces of five plates of N-BK7 lets 1 - ((n - 1) / (n + 1))^2 pass.
 TEST(Train, TenUncoatedSurfacesTransmitTheirProduct) {
     Prescription plates;
     plates.medium_before = Medium::air();
@@ -180,7 +180,7 @@ TEST(Train, TenUncoatedSurfacesTransmitTheirProduct) {
     const double expected = std::pow(1 - std::pow(0.5168 / 2.5168, 2), 10);
     EXPECT_NEAR(trace(0).transmitted, expected, 1e-14);
     EXPECT_NEAR(expected, 0.650, 5e-4); // its value, by hand
-    // Each uniform number stands for a ray: those that pass, and where the others end.
+    // Each uniform number stands for a ray: either it passes, or it ends somewhere.
     constexpr int rays = 400000;
     std::mt19937_64 generator(3);
     std::uniform_real_distribution<double> uniform(0, 1);
@@ -196,7 +196,7 @@ TEST(Train, TenUncoatedSurfacesTransmitTheirProduct) {
         }
     }
     EXPECT_LT(test::share_z(passed, rays, expected), 4); // false positives: 6e-5
-    // Wrong twin: one surface more.
+    // The wrong twin has one surface more.
     EXPECT_GT(test::share_z(passed, rays, expected * (1 - std::pow(0.5168 / 2.5168, 2))), 4);
     for (int i = 0; i < 10; ++i) {
         const double share = std::pow(expected, i / 10.0) * (1 - std::pow(expected, 0.1));

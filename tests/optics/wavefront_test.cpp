@@ -72,8 +72,8 @@ void expect_rays(const Instrument& instrument, const Wavefront& wavefront, glm::
 
 class WavefrontOf : public ::testing::TestWithParam<std::tuple<const char*, double>> {};
 
-// Rays that start where the gradient of W says land together; their paths are W's. In the middle and in the field's
-// corner, in focus and out of it.
+// Rays that start where the gradient of W says land together, and their paths are those of W, in the middle and in the
+// field's corner, in focus and out of it.
 TEST_P(WavefrontOf, AgreesWithTracedRays) {
     const auto& [name, field] = GetParam();
     const Instrument instrument = assemble(test::microscope(name));
@@ -108,7 +108,7 @@ TEST_P(Ideal, LeavesDebyesDefocusAlone) {
             EXPECT_NEAR(glm::length(wavefront.image_slope(p)),
                         0.1 * glm::length(p) / std::sqrt(1 - 0.01 * glm::dot(p, p)), 1e-9);
         }
-        // The same of a train that is entered higher: traced, not added.
+        // A train that is entered higher, traced instead of adding the defocus, gives the same path.
         Imaging imaging = imaging_of(instrument);
         const Wavefront traced(imaging, -10, z, reference_of(instrument));
         for (const glm::dvec2 p : pupil_points(traced)) {
@@ -122,8 +122,8 @@ TEST_P(Ideal, LeavesDebyesDefocusAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Apertures, Ideal, ::testing::Values(0.28, 0.66, 0.83));
 
-// Ways and media: a cover glass under oil, a tube lens that stands aside, another wavelength, a pupil that two edges
-// cut.
+// Ways and media count: a cover glass under oil, a tube lens that stands aside, another wavelength, a pupil that two
+// edges cut.
 TEST(Wavefront, OfImmersionAndCoverGlass) {
     auto description = test::ideal_microscope(0.5);
     description.immersion = Medium::constant("water", 1.33);
@@ -155,7 +155,7 @@ TEST(Wavefront, OfAnotherWavelength) {
         EXPECT_NEAR(wavefront.wavelength(), node.wavelength_um * mm_per_um, 1e-15);
         expect_rays(instrument, wavefront, {0, 0}, node.spectral);
     }
-    // Wrong twin: the other wavelength's rays.
+    // The wrong twin is the rays of the other wavelength.
     EXPECT_GT(deviation_from_rays(instrument, Wavefront(instrument, nodes[0]), {0, 0}, nodes[1].spectral).landing,
               10 * nm);
 }
@@ -172,7 +172,7 @@ TEST(Wavefront, EndsWhereAnEdgeClips) {
         expect_rays(instrument, wavefront, corner, 0, 150); // a pupil with two corners is fitted less well
         int wrong = 0;
         EXPECT_LT(wavefront.area(), 0.9 * Wavefront(instrument, reference_of(instrument)).area());
-        // Rays a little inside the rim and outside it.
+        // Rays are a little inside the rim and a little outside it.
         const Imaging imaging = imaging_of(instrument);
         for (int i = 0; i < 90; ++i) {
             const double azimuth = 2 * pi * (i + 0.3) / 90;
@@ -187,7 +187,7 @@ TEST(Wavefront, EndsWhereAnEdgeClips) {
         }
         EXPECT_LE(wrong, 4) << x; // where two edges meet, the rim has corners
     }
-    // Far outside nothing arrives.
+    // Far outside the field no light arrives.
     EXPECT_EQ(Wavefront(instrument, reference_of(instrument), {6, 0}).largest_rim(), 0);
 }
 

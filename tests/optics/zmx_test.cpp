@@ -50,7 +50,7 @@ InputProblem problem_of(const std::string& bytes) {
     return {};
 }
 
-// What two imports have in common, to the last bit.
+// A digest by which two imports are compared to the last bit.
 std::string digest(const ZmxLens& lens) {
     std::string text = prescription_text(lens.prescription);
     for (const double wavelength : lens.wavelengths_um) {
@@ -117,12 +117,12 @@ TEST(Zmx, ReadsModelGlassesOfACementedDoublet) {
     EXPECT_EQ(std::get<ModelGlass>(alike.surfaces[1].medium_after.dispersion), (ModelGlass{1.5169, 64.18}));
 }
 
-// Inches; a4 has the dimension of a length to the power -3, a16 to the power -15.
+// The file is in inches; a4 has the dimension of a length to the power -3, a16 to the power -15.
 TEST(Zmx, ConvertsUnitsOfEveryLength) {
     const auto lens = parsed(file_text("tilted_asphere.zmx")).prescription;
     ASSERT_EQ(lens.surfaces.size(), 2u);
     const auto& asphere = lens.surfaces[0];
-    // Two roundings of a product and a power: 1e-15 relative.
+    // A product and a power round twice: 1e-15 relative.
     const auto near = [](double value) { return ::testing::DoubleNear(value, 1e-15 * std::abs(value)); };
     EXPECT_THAT(asphere.curvature, near(0.1));
     EXPECT_EQ(asphere.conic, -0.6);
@@ -169,7 +169,7 @@ TEST(Zmx, IsTheSameInEveryEncoding) {
 }
 
 TEST(Zmx, KeepsLettersBeyondAscii) {
-    // "Objektiv groß, 𝜆" in UTF-8, and the same in UTF-16LE with a surrogate pair.
+    // The title "groß 𝜆" is given in UTF-8, and in UTF-16LE with a surrogate pair.
     const std::string utf8 = replaced(file_text("singlet.zmx"), "\"Biconvex singlet\"", "gro\xc3\x9f \xf0\x9d\x9c\x86");
     std::string utf16 = as_utf16(replaced(file_text("singlet.zmx"), "\"Biconvex singlet\"", "gro# ##"), true);
     utf16 = replaced(utf16, std::string("#\0 \0#\0#\0", 8), std::string("\xdf\0 \0\x35\xd8\x06\xdf", 8));
@@ -190,7 +190,7 @@ TEST(Zmx, TheMediumBehindTheImageIsLeftOut) {
         const auto other = replaced(text, "  DISZ 0\n", std::string("  DISZ 0\n  GLAS ") + glass + "\n");
         EXPECT_EQ(digest(parsed(other)), whole) << glass;
     }
-    // Before the image it matters.
+    // A glass before the image matters.
     const auto last = "CURV -2.5E-2 0 0 0 0 \"\"";
     const auto immersed = parsed(replaced(text, last, std::string(last) + "\n  GLAS F2 0 0 1.6 36"));
     EXPECT_EQ(immersed.prescription.surfaces.back().medium_after.name, "F2");
@@ -207,12 +207,12 @@ TEST(Zmx, AModelGlassOfAbbeNumberZeroHasNoDispersion) {
     EXPECT_EQ(std::get<ConstantIndex>(glass.dispersion), ConstantIndex{1.672});
     EXPECT_EQ(glass.index(0.2), 1.672);
     EXPECT_EQ(glass.index(12), 1.672);
-    // Written out and read back.
+    // The glass is written out and read back.
     const auto written = prescription_text(lens);
     const auto again = parse_prescription(written, "written.toml", GlassCatalog::builtin());
     EXPECT_EQ(again.surfaces[1].medium_after.dispersion, glass.dispersion);
     EXPECT_EQ(prescription_text(again), written);
-    // Another of the same code keeps its own name.
+    // Another glass of the same code has a name of its own.
     const auto alike =
         parsed(replaced(replaced(file_text("doublet.zmx"), "1.672 3.22E+1", "1.672 0"), "1.5168 6.417E+1", "1.6721 0"));
     EXPECT_EQ(alike.prescription.surfaces[0].medium_after.name, "672000");
@@ -354,7 +354,7 @@ TEST(Zmx, BytesThatAreNotUtf8AreLatin1) {
     EXPECT_EQ(parsed(replaced(text, "\"Biconvex singlet\"", "gro\xdf")).prescription.title, "gro\xc3\x9f");
 }
 
-// What an import says in the log.
+// The log of an import.
 std::string log_of(const std::string& bytes, std::optional<int> configuration = std::nullopt) {
     std::ostringstream log;
     const auto before = spdlog::default_logger();
@@ -397,7 +397,7 @@ TEST(Zmx, OtherKeywordsAreToldOfAndPassedOver) {
     }
 }
 
-// A glass of the singlet's first surface.
+// The text of the singlet with this glass behind its first surface.
 std::string with_glass(const std::string& glass) {
     return replaced(file_text("singlet.zmx"), "GLAS N-BK7 0 0 1.5168 6.417E+1", "GLAS " + glass);
 }
@@ -444,8 +444,7 @@ TEST(Zmx, AParaxialSurfaceInAirIsAnIdealLens) {
     EXPECT_THROW(parsed(replaced(text, "  DISZ 2", "  DISZ 2\n  GLAS N-BK7")), InputError);
 }
 
-// A lens, a mirror at 45 degrees that sends light down, and another lens behind it: the lens is that without the
-// mirror.
+// Behind a lens a mirror at 45 degrees sends light down to another lens: the import is that without the mirror.
 TEST(Zmx, APlaneMirrorIsUnfolded) {
     const std::string head = "MODE SEQ\nUNIT MM\nWAVM 1 0.55 1\nSURF 0\n  TYPE STANDARD\n  CURV 0\n  DISZ INFINITY\n"
                              "SURF 1\n  TYPE STANDARD\n  CURV 0.02\n  DISZ 4\n  GLAS N-BK7\n"
@@ -495,7 +494,7 @@ TEST(Zmx, AConfigurationIsChosenByItsNumber) {
     EXPECT_EQ(third.surfaces[0].medium_after.name, "F2");
     EXPECT_EQ(third.surfaces[1].conic, -0.5);
     EXPECT_THROW(of(4), InputError);
-    // What another configuration changes and the import does not understand is no lens of it.
+    // A parameter that the import does not understand makes the configuration that has it unusable, but no other one.
     const auto with_parameter = replaced(text, "MNUM 3 2", "MNUM 3 2\nPRAM 1 3 0.5 0 0");
     EXPECT_THROW(parse_zmx(with_parameter, "lens.zmx", GlassCatalog::builtin(), 3), InputError);
     EXPECT_EQ(parse_zmx(with_parameter, "lens.zmx", GlassCatalog::builtin(), 1).prescription.surfaces[0].thickness,

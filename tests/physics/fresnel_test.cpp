@@ -18,8 +18,8 @@ double square(double x) {
     return x * x;
 }
 
-// R of one layer by its characteristic matrix (Born and Wolf, section 1.6.2) in complex admittances, which needs no
-// case for total reflection. Unpolarised.
+// The unpolarised reflectance of one layer by its characteristic matrix (Born and Wolf, section 1.6.2) in complex
+// admittances, which needs no case for total reflection.
 double matrix_reflectance(double before, double layer, double after, double sine, double thickness, double wavelength) {
     using complex = std::complex<double>;
     const auto cosine = [&](double index) { return std::sqrt(complex(1 - square(before * sine / index))); };
@@ -48,7 +48,7 @@ TEST(Fresnel, NormalIncidence) {
     EXPECT_NEAR(expected, 0.04216, 5e-6); // its value, by hand
 }
 
-// The same from either side along one path, and against the matrix without a layer.
+// The reflectance is the same from either side along one path, and that of the characteristic matrix without a layer.
 TEST(Fresnel, EitherSideAndTheMatrixAgree) {
     for (int i = 0; i < 90; ++i) {
         const double sine = std::sin(i * M_PI / 180);
@@ -78,7 +78,7 @@ TEST(Fresnel, CriticalAngle) {
     for (const double refracted : {1e-2, 1e-3, 1e-4}) {
         const double sine = std::sqrt(1 - refracted * refracted) / glass;
         const double root = std::sqrt(glass * glass - 1);
-        // s: 1 - R = 4 cos' / (n cos); p: 4 n cos' / cos, halved for their mean.
+        // For s light 1 - R = 4 cos' / (n cos), for p light 4 n cos' / cos; both are halved for their mean.
         const double lost = 2 * refracted * (1 / root + glass * glass / root);
         EXPECT_NEAR(1 - at(sine), lost, lost * lost) << refracted;
     }
@@ -93,7 +93,7 @@ TEST(Fresnel, GrazingIncidence) {
     }
 }
 
-// A quarter wave: ((n0 ns - n1^2) / (n0 ns + n1^2))^2; a half wave: as if there were no layer.
+// A quarter wave gives ((n0 ns - n1^2) / (n0 ns + n1^2))^2; with a half wave it is as if there were no layer.
 TEST(QuarterWaveLayer, NormalIncidence) {
     const double quarter = square((glass - fluoride * fluoride) / (glass + fluoride * fluoride));
     EXPECT_NEAR(layer_at(0, design), quarter, 1e-15);
@@ -103,7 +103,7 @@ TEST(QuarterWaveLayer, NormalIncidence) {
     EXPECT_GT(layer_at(0, design / 1.02), quarter + 1e-6);
 }
 
-// Both sides, all angles, and thicknesses to many waves, total reflection included.
+// The matrix agrees from both sides, at all angles, and for thicknesses up to many waves, total reflection included.
 TEST(QuarterWaveLayer, AgreesWithTheCharacteristicMatrix) {
     double twin = 0;
     for (const double thickness : {0.0, 0.03, design / (4 * fluoride), 0.31, 7.7}) {
@@ -117,7 +117,7 @@ TEST(QuarterWaveLayer, AgreesWithTheCharacteristicMatrix) {
                     const double expected = matrix_reflectance(before, fluoride, after, sine, thickness, wavelength);
                     const double found =
                         f64::layer_reflectance(before, fluoride, after, cosine, thickness, 1 / wavelength);
-                    // Rounding of a phase of up to 200 rad, and of 1 - R near grazing.
+                    // The tolerance is for rounding of a phase of up to 200 rad, and of 1 - R near grazing.
                     EXPECT_NEAR(found, expected, 1e-12) << thickness << " " << wavelength << " " << i << inward;
                     EXPECT_GE(found, 0);
                     EXPECT_LE(found, 1 + 1e-15);
@@ -127,7 +127,7 @@ TEST(QuarterWaveLayer, AgreesWithTheCharacteristicMatrix) {
                     const double off =
                         f64::layer_reflectance(before, fluoride, after, cosine, 1.01 * thickness, 1 / wavelength);
                     twin = std::max(twin, std::abs(off - expected));
-                    // The device's arithmetic: the phase rounds to 2^-24 of its size, that of 7.7 um to 1e-5 rad.
+                    // In the device's arithmetic the phase rounds to 2^-24 of its size, that of 7.7 um to 1e-5 rad.
                     EXPECT_NEAR(f32::layer_reflectance(float(before), float(fluoride), float(after), float(cosine),
                                                        float(thickness), float(1 / wavelength)),
                                 expected, std::abs(i - 41) < 2 && !inward ? 1e-3 : 2e-5);

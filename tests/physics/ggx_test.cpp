@@ -1,4 +1,5 @@
-// GGX: reciprocity, the formula as textbooks have it, what is kept of the light, and both ends of its roughness.
+// GGX is reciprocal, has the formula of textbooks, and keeps the share of light that another program finds, at both
+// ends of its roughness too.
 #include "ggx_quadratures.hpp"
 #include "physics/physics.hpp"
 #include "specimen/scatter_tables.hpp"
@@ -33,7 +34,7 @@ double radians(double degrees) {
     return degrees * M_PI / 180;
 }
 
-// (sqrt(1 + alpha^2 tan^2) - 1) / 2
+// The masking function Lambda = (sqrt(1 + alpha^2 tan^2) - 1) / 2.
 double masking(double alpha, double cosine) {
     return (std::sqrt(1 + alpha * alpha * (1 / (cosine * cosine) - 1)) - 1) / 2;
 }
@@ -48,7 +49,8 @@ double textbook(double alpha, real3 from, real3 to, bool correlated = true) {
     return d / (correlated ? 1 + i + o : (1 + i) * (1 + o)) / (4 * from.z * to.z);
 }
 
-// Share of the light that is scattered, over the hemisphere: a half of it, by the trapezoidal rule in the azimuth.
+// The share of the light that is scattered over the hemisphere, of which half is integrated, by the trapezoidal rule in
+// the azimuth.
 template <class Bsdf>
 double kept(Bsdf bsdf, double theta) {
     const int azimuths = 512;
@@ -81,7 +83,8 @@ TEST(Ggx, IsReciprocal) {
         ASSERT_GT(there, 0);
         EXPECT_LT(std::abs(there - back), 1e-12 * there);
     }
-    // Henyey-Greenstein is not: its norm is that of the incidence. 1.8657 by scipy's quadrature of both norms.
+    // Henyey-Greenstein is not reciprocal: its norm is that of the incidence. scipy's quadrature of both norms gives
+    // 1.8657.
     const auto ratio = [](const Material& material) {
         const real3 steep = direction(radians(60));
         return scatter_bsdf(material, -steep, up, up) / scatter_bsdf(material, -up, up, steep);
@@ -108,7 +111,8 @@ TEST(Ggx, IsTheTextbooksFormula) {
     EXPECT_GT(uncorrelated, 0.5); // wrong twin
 }
 
-// The white furnace: what is kept, by the density and by the sampler, which absorbs the rest and loses nothing else.
+// In the white furnace the density keeps the share of single scattering, and so does the sampler, which absorbs the
+// rest and loses nothing else.
 TEST(Ggx, KeepsTheShareOfSingleScattering) {
     for (const auto& [alpha, degrees, share] : kept_by_ggx) {
         SCOPED_TRACE(testing::Message() << alpha << " at " << degrees);
@@ -151,7 +155,7 @@ TEST(Ggx, OfFullRoughnessIsLommelSeeliger) {
 }
 
 // At normal incidence half of the light meets facets of slopes below alpha, and goes off at less than twice their
-// angle: at the sharp end too, on a surface that no axis is normal to, in float as in double.
+// angle: for sharp lobes too, on a surface that no axis is normal to, in float as in double.
 TEST(Ggx, HalfOfTheLightStaysWithinTwiceTheSlope) {
     const real3 normal = direction(0.7, 0.3);
     constexpr uint draws = 100000;
@@ -176,7 +180,7 @@ TEST(Ggx, HalfOfTheLightStaysWithinTwiceTheSlope) {
     }
 }
 
-// In float, near the mirror direction of the sharpest lobe, where 1 - cos^2 would be lost.
+// Float keeps the density near the mirror direction of the sharpest lobe, where 1 - cos^2 would be lost.
 TEST(Ggx, FloatKeepsTheDensity) {
     for (const double alpha : {0.001, 0.01, 0.2}) {
         f32::Material single{};

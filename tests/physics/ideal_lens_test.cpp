@@ -14,7 +14,8 @@ namespace {
 constexpr double focal_length = 10; // mm
 constexpr double immersion = 1.33;
 
-// From a place in front of the lens, given from its principal planes, with direction cosines (l, m) times the index.
+// Passes the lens from a place in front of it, given from its principal planes, with direction cosines (l, m) times the
+// index.
 IdealLens pass(real3 position, double l, double m, double before, double after, double f = focal_length) {
     return pass_ideal_lens(position, real3(l, m, std::sqrt(before * before - l * l - m * m)), 1 / f, before, after);
 }
@@ -23,8 +24,8 @@ constexpr std::array<double, 7> sines = {-0.95, -0.6, -0.2, 0.0, 0.3, 0.7, 0.95}
 
 } // namespace
 
-// A point of the front focal plane becomes one plane wave: one direction, one optical path to a wavefront, at any
-// aperture.
+// A point of the front focal plane becomes one plane wave at any aperture: one direction, one optical path to a
+// wavefront.
 TEST(IdealLens, ImagesItsFrontFocalPlaneToInfinity) {
     for (const auto& [before, after] : {std::pair(1.0, 1.0), {immersion, 1.0}, {1.0, immersion}}) {
         for (const double x : {0.0, 1.5, -4.0}) {
@@ -33,7 +34,7 @@ TEST(IdealLens, ImagesItsFrontFocalPlaneToInfinity) {
                     const IdealLens lens =
                         pass({x, 0.5, -before * focal_length}, before * l, before * m, before, after);
                     ASSERT_EQ(lens.passes, 1u);
-                    // The chief ray's slope through the nodal point, as a sine: x / f.
+                    // The chief ray goes through the nodal point with a slope whose sine is x / f.
                     EXPECT_NEAR(lens.direction.x, -x / focal_length, 1e-15);
                     EXPECT_NEAR(lens.direction.y, -0.05, 1e-15);
                     EXPECT_NEAR(glm::length(lens.direction), after, 1e-15);
@@ -46,7 +47,8 @@ TEST(IdealLens, ImagesItsFrontFocalPlaneToInfinity) {
     }
 }
 
-// Abbe: a ray from the focal point leaves at the height n f sin(theta); f tan(theta) is the wrong twin.
+// By Abbe's sine condition a ray from the focal point leaves at the height n f sin(theta); f tan(theta) is the wrong
+// twin.
 TEST(IdealLens, ObeysTheSineCondition) {
     for (const double sine : sines) {
         const IdealLens lens = pass({0, 0, -immersion * focal_length}, immersion * sine, 0, immersion, 1);
@@ -57,8 +59,8 @@ TEST(IdealLens, ObeysTheSineCondition) {
     }
 }
 
-// Objective and tube lens: all rays of a point meet in one point, along equal optical paths, wherever the tube lens
-// stands.
+// Through objective and tube lens all rays of a point meet in one point, along equal optical paths, wherever the tube
+// lens stands.
 TEST(IdealLens, TwoOfThemImageAPointToAPoint) {
     constexpr double tube = 200;
     for (const double distance : {30.0, 170.0}) {
@@ -80,8 +82,8 @@ TEST(IdealLens, TwoOfThemImageAPointToAPoint) {
     }
 }
 
-// (x, y, p, q) on one plane to those on another has the determinant 1 between any planes: etendue is kept. A thin lens
-// of tangents is the wrong twin.
+// The map of (x, y, p, q) from one plane to another has the determinant 1 between any planes: etendue is kept. A thin
+// lens of tangents is the wrong twin.
 TEST(IdealLens, KeepsEtendue) {
     const auto canonical = [](std::array<double, 4> in, bool tangents) {
         const double axial = std::sqrt(immersion * immersion - in[2] * in[2] - in[3] * in[3]);
@@ -116,7 +118,7 @@ TEST(IdealLens, KeepsEtendue) {
     };
     for (const std::array<double, 4> at :
          {std::array{0.0, 0.0, 0.0, 0.0}, {1.0, 0.5, 0.3, -0.2}, {-1.0, 2.0, 0.9, 0.3}, {2.0, 0.0, -1.0, 0.5}}) {
-        // Central differences: step^2 times third derivatives, a few hundred at the steepest.
+        // Central differences err by step^2 times third derivatives, a few hundred at the steepest.
         EXPECT_NEAR(determinant(at, false), 1, 1e-5);
     }
     EXPECT_GT(std::abs(determinant({-1.0, 2.0, 0.9, 0.3}, true) - 1), 0.05);

@@ -28,7 +28,7 @@ namespace {
 
 using Numbers = std::array<std::uint32_t, 6>; // of 21 bits
 
-// What a generator makes of (seed, image, path, block).
+// A generator of random words: a function of (seed, image, path, block).
 using Generator = std::function<uvec4(uint, uint, uint, uint)>;
 
 uvec4 philox(uint seed, uint image, uint path, uint block, int rounds) {
@@ -69,7 +69,7 @@ double uniform_p(const std::vector<std::uint32_t>& counts, double total) {
     return two_sided(vkfv::test::chi_square_tail(chi_square, static_cast<double>(counts.size()) - 1));
 }
 
-// Joint histogram of 64 x 64 cells.
+// The p-value of a histogram over so many cells for uniform numbers; cell(k) is the cell of the k-th draw.
 template <class Cell>
 double cells_p(const std::vector<Numbers>& drawn, std::size_t cells, Cell cell) {
     std::vector<std::uint32_t> counts(cells);
@@ -79,9 +79,9 @@ double cells_p(const std::vector<Numbers>& drawn, std::size_t cells, Cell cell) 
     return uniform_p(counts, static_cast<double>(drawn.size()));
 }
 
-// How many of n throws into m cells meet a cell that is taken: mean and variance of the occupancy problem (W. Feller,
-// "An Introduction to Probability Theory and Its Applications" I, 3rd ed., IX.9), normal for the thousands that there
-// are.
+// The p-value of the number of collisions: of n throws into m cells, how many meet a cell that is taken. Mean and
+// variance are those of the occupancy problem (W. Feller, "An Introduction to Probability Theory and Its Applications"
+// I, 3rd ed., IX.9), and the number is normal for the thousands that there are.
 template <class Cell>
 double collisions_p(const std::vector<Numbers>& drawn, Cell cell) {
     constexpr double m = 0x1p21;
@@ -100,7 +100,8 @@ double collisions_p(const std::vector<Numbers>& drawn, Cell cell) {
     return std::erfc(std::abs(met - mean) / std::sqrt(2 * variance));
 }
 
-// Equidistribution of the high and of the low bits, pairs, neighbours in the sequence, their correlation, collisions.
+// Tests equidistribution of the high and of the low bits, pairs, neighbours in the sequence, their correlation and
+// collisions.
 void test_sequence(const std::vector<Numbers>& drawn, std::vector<double>& p) {
     const auto n = static_cast<double>(drawn.size());
     for (std::size_t i = 0; i < 6; ++i) {
@@ -124,8 +125,8 @@ void test_sequence(const std::vector<Numbers>& drawn, std::vector<double>& p) {
     }
 }
 
-// Whether images of consecutive seeds scatter as independent ones do: 256 seeds, each with 2048 paths in 8 x 8 pixels
-// by each pair of numbers. The sum of squared deviations has 256 * 63 degrees of freedom, so 1.1 % of it is one
+// Tests whether images of consecutive seeds scatter as independent ones do: 256 seeds, each with 2048 paths in 8 x 8
+// pixels by each pair of numbers. The sum of squared deviations has 256 * 63 degrees of freedom, so 1.1 % of it is one
 // standard deviation, and 11 % of excess variance is ten.
 void test_dispersion(const Generator& generator, std::vector<double>& p) {
     constexpr uint seeds = 256, paths = 2048;
@@ -179,8 +180,8 @@ Verdict battery(const Generator& generator) {
 
 } // namespace
 
-// 255 p-values; a sound generator fails with the probability 1/1000 (and as all is fixed, always or never). What is
-// weaker must be found out: five rounds, and pcg4d.
+// A sound generator fails one of 255 p-values with the probability 1/1000 (and as all is fixed, always or never).
+// Weaker generators must be found out: five rounds, and pcg4d.
 TEST(Random, NumbersPassTheBatteryOverPathsSeedsImagesAndBlocks) {
     const auto of_rounds = [](int rounds) {
         return battery([rounds](uint seed, uint image, uint path, uint block) {
@@ -195,8 +196,8 @@ TEST(Random, NumbersPassTheBatteryOverPathsSeedsImagesAndBlocks) {
     EXPECT_LT(battery(pcg4d).least, level);
 }
 
-// Wrong twins: four rounds, and images of 11 % more variance than independent paths have, since a path of 18 repeats
-// the one before: of n paths a share f so repeated makes the variance of a pixel 1 + 2 f times as large.
+// The wrong twins are four rounds, and images of 11 % more variance than independent paths have, since a path of 18
+// repeats the one before: of n paths a share f so repeated makes the variance of a pixel 1 + 2 f times as large.
 TEST(Random, ImagesOfConsecutiveSeedsScatterAsIndependentOnes) {
     const auto least = [](const Generator& generator) {
         std::vector<double> p;

@@ -1,4 +1,4 @@
-// Patterns of reflectance against closed forms and against other ways to write them.
+// Patterns of reflectance agree with closed forms and with other ways to write them.
 #include "physics/physics.hpp"
 
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ std::vector<Point> points(int count, double reach) {
     return result;
 }
 
-// Mean of the map times exp(-2 pi i (fx x + fy y)) over a square of the side 1 mm.
+// The mean of the map times exp(-2 pi i (fx x + fy y)) over a square of the side 1 mm.
 std::complex<double> coefficient(const Map& map, double fx, double fy) {
     constexpr int side = 400;
     std::complex<double> sum = 0;
@@ -95,7 +95,7 @@ std::complex<double> coefficient(const Map& map, double fx, double fy) {
 
 } // namespace
 
-// 5 periods a mm along (3, 4) / 5: the phase at the origin says where it is brightest.
+// The grating has 5 periods a mm along (3, 4) / 5: the phase at the origin says where it is brightest.
 TEST(Reflectance, ASinusoidalGratingIsOneFrequency) {
     Map grating;
     grating.record.lowest = 0.2;
@@ -159,8 +159,8 @@ TEST(Reflectance, AStarIsACosineOfTheAzimuth) {
     EXPECT_EQ(star(0.1, 0), 1); // the centre has no azimuth
 }
 
-// The grid's points at odd halves of a pitch; beyond its outer pixels the reflections of SciPy's "reflect"
-// (scipy.ndimage: d c b a | a b c d | d c b a), here counted by hand.
+// The grid's points lie at odd halves of a pitch; beyond its outer pixels the values are the reflections of SciPy's
+// "reflect" (scipy.ndimage: d c b a | a b c d | d c b a), here counted by hand.
 TEST(Reflectance, AGridIsLinearBetweenItsPointsAndGoesOnMirrored) {
     Map grid;
     grid.record.kind = f64::PATTERN_GRID;

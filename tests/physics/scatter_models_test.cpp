@@ -1,5 +1,5 @@
-// Scatter models against formulas written anew: what ggx-multiple-scatter gives back, the lobes of polished surfaces
-// over direction cosines, and metals.
+// Scatter models agree with formulas written anew: the light that ggx-multiple-scatter gives back, the lobes of
+// polished surfaces over direction cosines, and metals.
 #include "ggx_quadratures.hpp"
 #include "physics/physics.hpp"
 #include "specimen/scatter_tables.hpp"
@@ -39,7 +39,7 @@ double radians(double degrees) {
     return degrees * M_PI / 180;
 }
 
-// Share of the light that is scattered, over half of the hemisphere twice: Simpson in t, the cosine being 1 - t^2.
+// The share of the light that is scattered, twice that of half the hemisphere: Simpson in t, the cosine being 1 - t^2.
 double kept(const Material& material, double theta) {
     const int azimuths = 512;
     double sum = 0;
@@ -56,8 +56,8 @@ double kept(const Material& material, double theta) {
     return sum * M_PI / azimuths;
 }
 
-// Of a lobe over direction cosines: numpy's Gauss points (400) along the radius by 4000 azimuths, about the mirror
-// direction's cosines out to the unit circle.
+// The share of a lobe over direction cosines that lies above the horizon, by numpy's Gauss points (400) along the
+// radius and 4000 azimuths, about the mirror direction's cosines out to the unit circle.
 struct LobeKept {
     uint model;
     double first, second, degrees, share;
@@ -70,7 +70,7 @@ constexpr LobeKept lobes_kept[] = {
     {SCATTER_ABG, 1e-4, 2.5, 60, 0.89749006},          {SCATTER_ABG, 0.3, 0.5, 60, 0.87794318},
 };
 
-// Of light with unit incident amplitude at the angle of this cosine, by complex amplitudes.
+// The reflectances of s- and p-polarised light at the angle of incidence with this cosine, by complex amplitudes.
 struct Polarised {
     double s, p;
     double mean() const { return 0.5 * (s + p); }
@@ -83,7 +83,8 @@ Polarised reflected(std::complex<double> index, double cosine) {
 
 } // namespace
 
-// The furnace: with the single scattering of another program, what is given back makes up for all that is lost.
+// In the white furnace, with the single scattering of another program, the light given back makes up for all that is
+// lost.
 TEST(GgxMultipleScatter, GivesBackWhatFacetsLoseByReflectingOnce) {
     for (const auto& [alpha, degrees, share] : kept_by_ggx) {
         SCOPED_TRACE(testing::Message() << alpha << " at " << degrees);
@@ -91,7 +92,7 @@ TEST(GgxMultipleScatter, GivesBackWhatFacetsLoseByReflectingOnce) {
         const auto given_back = [&](const Material& material) {
             Lobe lobe = material.lobe_0;
             const auto lack = [&](double mu) { return ggx_multiple_scatter_lack(lobe.parameter_0, lobe.table, mu); };
-            // 1 / pi over the azimuth; the cosine is s^2.
+            // The integral over the azimuth gives 1 / pi; the cosine is s^2.
             const double mean = integrate([&](double s) { return 4 * s * s * s * lack(s * s); }, 0.0, 1.0);
             return lack(std::cos(radians(degrees))) * mean;
         };
@@ -106,7 +107,8 @@ TEST(GgxMultipleScatter, ClosesTheWhiteFurnaceAtAnyRoughnessAndIncidence) {
         for (const double degrees : {0.0, 30.0, 60.0, 80.0}) {
             EXPECT_NEAR(kept(material, radians(degrees)), 1, 2e-3) << alpha << " at " << degrees;
         }
-        // By the integral over the angle of scatter that tests above hold to scipy's, near grazing incidence too.
+        // Near grazing incidence too the furnace closes, by the integral over the angle of scatter that tests above
+        // hold to scipy's.
         Lobe lobe = material.lobe_0;
         for (const double degrees : {85.0, 89.0, 89.9}) {
             const auto lack = [&](double mu) { return ggx_multiple_scatter_lack(alpha, lobe.table, mu); };
@@ -116,7 +118,7 @@ TEST(GgxMultipleScatter, ClosesTheWhiteFurnaceAtAnyRoughnessAndIncidence) {
         }
         EXPECT_LT(kept(one(SCATTER_GGX, alpha), radians(80)), 0.96); // wrong twin: single scattering
     }
-    // Full roughness in closed form: single scattering keeps 1 - mu ln((1 + mu) / mu), as in ggx_test.cpp.
+    // Full roughness has a closed form: single scattering keeps 1 - mu ln((1 + mu) / mu), as in ggx_test.cpp.
     for (const double mu : {1.0, 0.5, 0.1, 0.01}) {
         EXPECT_NEAR(ggx_kept(1, mu), 1 - mu * std::log((1 + mu) / mu), 1e-9);
     }
@@ -145,7 +147,7 @@ TEST(HarveyShack, IsTheFormulaOfDirectionCosines) {
         for (const double slope : {-0.7, -1.5, -2.0, -3.0}) {
             const Material material = one(SCATTER_HARVEY_SHACK, shoulder, slope);
             const double peak = scatter_bsdf(material, -up, up, up);
-            // Total integrated scatter 1 in closed form.
+            // The peak follows from a total integrated scatter of 1 in closed form.
             const double p = 1 + slope / 2, last = 1 + 1 / (shoulder * shoulder);
             const double total = slope == -2 ? std::log(last) : (std::pow(last, p) - 1) / p;
             EXPECT_NEAR(peak * M_PI * shoulder * shoulder * total, 1, 1e-9) << shoulder << " " << slope;
@@ -162,7 +164,7 @@ TEST(HarveyShack, IsTheFormulaOfDirectionCosines) {
 
 TEST(Abg, IsTheFormulaOfDirectionCosinesAndAHarveyShackLobeWhereGIsTwo) {
     for (const double b : {1e-9, 1e-4, 0.03, 1.0}) {
-        // A in closed form for g = 2.
+        // For g = 2 the factor A has a closed form.
         const Material material = one(SCATTER_ABG, b, 2);
         EXPECT_NEAR(scatter_bsdf(material, -up, up, up) * b * M_PI * std::log((1 + b) / b), 1, 1e-9) << b;
         const Material same = one(SCATTER_HARVEY_SHACK, std::sqrt(b), -2);
@@ -182,7 +184,7 @@ TEST(Abg, IsTheFormulaOfDirectionCosinesAndAHarveyShackLobeWhereGIsTwo) {
     }
 }
 
-// What lies beyond the horizon is absorbed, and nothing else: by the sampler, at all incidences.
+// The sampler absorbs the light that would leave below the horizon, and nothing else, at all incidences.
 TEST(ScatterOfCosines, KeepsTheShareOfTheLobeAboveTheHorizon) {
     constexpr uint draws = 40000;
     for (const auto& [model, first, second, degrees, share] : lobes_kept) {
@@ -200,7 +202,8 @@ TEST(ScatterOfCosines, KeepsTheShareOfTheLobeAboveTheHorizon) {
     }
 }
 
-// The radius of sharp lobes, in float as in double, on a surface that no axis is normal to.
+// Half of the light of sharp lobes lies within the median radius, in float as in double, on a surface that no axis is
+// normal to.
 TEST(ScatterOfCosines, HalfOfTheLightIsWithinTheMedianDistance) {
     const real3 normal = direction(0.7, 0.3);
     constexpr uint draws = 40000;
@@ -208,8 +211,8 @@ TEST(ScatterOfCosines, HalfOfTheLightIsWithinTheMedianDistance) {
         uint model;
         double first, second, median;
     };
-    // Of Harvey and Shack (1 + (d/l)^2)^p = 1 + u ((1 + 1/l^2)^p - 1); of ABg with g = 2 log(1 + d^2/B) = u log(1 +
-    // 1/B).
+    // The median of Harvey and Shack's lobe follows from (1 + (d/l)^2)^p = 1 + u ((1 + 1/l^2)^p - 1) with u = 1/2, and
+    // that of ABg with g = 2 from log(1 + d^2/B) = u log(1 + 1/B).
     const auto harvey = [](double l, double slope) {
         const double p = 1 + slope / 2;
         return l * std::sqrt(std::pow(1 + 0.5 * (std::pow(1 + 1 / (l * l), p) - 1), 1 / p) - 1);
@@ -238,13 +241,13 @@ TEST(ScatterOfCosines, HalfOfTheLightIsWithinTheMedianDistance) {
 }
 
 TEST(TotalScatter, IsThatOfThePhaseThatTheHeightMakes) {
-    // 10 nm at 632.8 nm: (4 pi 10 / 632.8)^2 = 0.03944.
+    // A roughness of 10 nm at 632.8 nm has (4 pi 10 / 632.8)^2 = 0.03944.
     EXPECT_NEAR(vkfv::specimen::total_scatter(10e-6, 0.6328), 0.03867, 1e-5);
     EXPECT_NEAR(vkfv::specimen::total_scatter(1e-6, 0.6328) / 3.944e-4, 1, 1e-3);
     EXPECT_NEAR(vkfv::specimen::total_scatter(0.01, 0.5), 1, 1e-12);
 }
 
-// Gold at 0.5876 um, silver, iron, a dielectric, and an index below that of the medium.
+// The indices are those of gold at 0.5876 um, silver, iron, a dielectric, and one below that of the medium.
 TEST(Conductor, ReflectsAsFresnelsComplexAmplitudesSay) {
     const std::vector<std::complex<double>> indices = {{0.27, 2.95}, {0.05, 4.0}, {2.9, 3.1},
                                                        {1.5, 0},     {0.8, 0},    {4, 0.1}};
@@ -260,11 +263,11 @@ TEST(Conductor, ReflectsAsFresnelsComplexAmplitudesSay) {
             if (index.imag() == 0 && index.real() > 1) {
                 EXPECT_NEAR(seen, fresnel_reflectance(1, index.real(), cosine), 1e-12);
             }
-            // Wrong twin: of one polarisation.
+            // The wrong twin is the reflectance of one polarisation.
             EXPECT_TRUE(degrees < 20 || index == std::complex<double>(0.8, 0) || std::abs(seen - wanted.s) > 1e-4)
                 << index << " " << degrees;
         }
-        // At normal incidence ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
+        // At normal incidence the reflectance is ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
         EXPECT_NEAR(absorbing_reflectance(index.real(), index.imag(), 1),
                     std::norm(index - 1.0) / std::norm(index + 1.0), 1e-14);
     }

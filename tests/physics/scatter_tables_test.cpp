@@ -1,4 +1,4 @@
-// What the host works out for the scatter models, against closed forms and integrals.
+// The tables that the host works out for the scatter models agree with closed forms and integrals.
 #include "specimen/scatter_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace f32 = vkfv::physics::f32;
 
 } // namespace
 
-// N = sum over l of (2 l + 1) / 2 g^l P_l(cos(theta_i)) c_l with c_l the integral of mu P_l(mu) over [0, 1]: 1/2, 1/3,
-// then 0 for odd l and c_2 = 1/8, c_{2k+2} = -c_{2k} (2k - 1) / (2k + 4).
+// The norm is N = sum over l of (2 l + 1) / 2 g^l P_l(cos(theta_i)) c_l with c_l the integral of mu P_l(mu) over [0,
+// 1]: 1/2, 1/3, then 0 for odd l and c_2 = 1/8, c_{2k+2} = -c_{2k} (2k - 1) / (2k + 4).
 TEST(ScatterTables, TheNormIsThatOfTheLegendreSeries) {
     const auto series = [](double g, double cosine) {
         double sum = 0.25 + g * cosine / 2;
@@ -43,7 +43,8 @@ TEST(ScatterTables, TheNormIsThatOfTheLegendreSeries) {
     }
 }
 
-// What density and kernels take, against the integral, in double and in float and between the points of the fit.
+// The norm that density and kernels take from the table is the integral's, in double and in float, between the points
+// of the fit too.
 TEST(ScatterTables, TheTableGivesTheNorm) {
     std::vector<double> gs = {-0.899, -0.41, -0.39, -1e-9, 1e-9, 0.39, 0.41, 0.995, 0.998, 0.999};
     for (int k = 0; k < 95; ++k) {

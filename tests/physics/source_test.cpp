@@ -18,7 +18,7 @@ constexpr int rays = 1500000;
 constexpr int annuli = 30;
 constexpr double false_positive_rate = 1e-4; // of each test here; seeds are fixed
 
-// Rays of a disc (radius, hemisphere) that land in rings of equal width on a plane at `distance`.
+// The numbers of rays of a disc (radius, hemisphere) that land in rings of equal width on a plane at `distance`.
 std::vector<double> land_in_rings(double radius, double distance, double outermost, uint seed) {
     std::vector<double> seen(annuli + 1);
     for (uint k = 0; k < rays; ++k) {
@@ -46,7 +46,8 @@ std::vector<double> expected_in_rings(const std::function<double(double)>& irrad
 
 } // namespace
 
-// A source small against its distance: E = E0 cos^4(theta); with d = 1, E0 = 1 / (pi d^2) of the emitted power.
+// The light of a source small against its distance obeys E = E0 cos^4(theta); with d = 1, E0 = 1 / (pi d^2) of the
+// emitted power.
 TEST(Source, ASmallDiscObeysTheCosineToTheFourthLaw) {
     const auto seen = land_in_rings(1e-6, 1.0, 3.0, 11u);
     const auto law = [](double power) {
@@ -56,8 +57,9 @@ TEST(Source, ASmallDiscObeysTheCosineToTheFourthLaw) {
     EXPECT_LT(chi_square_p(seen, expected_in_rings(law(4.02), 3.0)), false_positive_rate); // wrong twin
 }
 
-// P. D. Foote, Bull. Bur. Stand. 12 (1915) 583: irradiance of a plane parallel to a Lambertian disc of radius R at the
-// distance d and offset x: E = (M/2) [1 - (x^2 + d^2 - R^2) / sqrt((x^2 + d^2 + R^2)^2 - 4 x^2 R^2)], M the exitance.
+// P. D. Foote, Bull. Bur. Stand. 12 (1915) 583, gives the irradiance of a plane parallel to a Lambertian disc of radius
+// R at the distance d and offset x: E = (M/2) [1 - (x^2 + d^2 - R^2) / sqrt((x^2 + d^2 + R^2)^2 - 4 x^2 R^2)], M the
+// exitance.
 TEST(Source, AFiniteDiscObeysFootesFormula) {
     const double d = 1.0;
     const auto foote = [d](double disc) {
@@ -72,8 +74,9 @@ TEST(Source, AFiniteDiscObeysFootesFormula) {
     EXPECT_LT(chi_square_p(seen, expected_in_rings(foote(0.82), 3.0)), false_positive_rate); // wrong twin
 }
 
-// J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-11: of a surface element at the distance
-// 1 below a corner of a parallel rectangle a x b; odd in both sides, so that four corners make any rectangle.
+// The configuration factor of a surface element at the distance 1 below a corner of a parallel rectangle a x b (J. R.
+// Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-11); it is odd in both sides, so that four
+// corners make any rectangle.
 double corner_factor(double a, double b) {
     const double along = std::sqrt(1 + a * a), across = std::sqrt(1 + b * b);
     return (a / along * std::atan(b / along) + b / across * std::atan(a / across)) / (2 * M_PI);
@@ -120,7 +123,7 @@ TEST(Source, ARectangleObeysTheConfigurationFactor) {
         return counts;
     };
     EXPECT_GT(chi_square_p(seen, expected(half_width, half_height)), false_positive_rate);
-    // Wrong twins: a little wider, and with its sides exchanged.
+    // The wrong twins are a little wider, or have their sides exchanged.
     EXPECT_LT(chi_square_p(seen, expected(1.03 * half_width, half_height)), false_positive_rate);
     EXPECT_LT(chi_square_p(seen, expected(half_height, half_width)), false_positive_rate);
 }
@@ -150,8 +153,9 @@ TEST(Source, AnAimedDiscIsTheConeCutOutOfTheWhole) {
     EXPECT_GT(chi_square_p(whole, uniform_whole), false_positive_rate);
 }
 
-// The same where the middle moves with the place: about it the part cut out of the whole is as even, from every part of
-// the source. Bins of equal light: by the place, and by the distance from the middle and the side of it.
+// An aim whose middle moves with the place is a part cut out of the whole too: about the middle it is as even, from
+// every part of the source. Bins are of equal light: by the place, and by the distance from the middle and the side of
+// it.
 TEST(Source, AnAimThatMovesWithThePlaceIsCutOutOfTheWhole) {
     constexpr double sine = 0.3, shift = -0.6;
     constexpr int places = 5, distances = 6, sides = 8, bins = places * distances * sides;
@@ -264,7 +268,8 @@ TEST(RingLight, StandsWhereItIsSaidTo) {
     EXPECT_GT(chi_square_p(within, std::vector<double>(20, 200000 / 20.0)), false_positive_rate);
 }
 
-// Uniform per area: over the width the density goes as the radius. Uniform in width is the wrong twin.
+// Light is uniform per area: over the width the density goes as the radius. A density uniform in width is the wrong
+// twin.
 TEST(RingLight, IsUniformOverItsArea) {
     const RingLight ring = broad_ring();
     const double radius = ring.distance * ring.elevation_cosine;
@@ -283,7 +288,7 @@ TEST(RingLight, IsUniformOverItsArea) {
     EXPECT_GT(chi_square_p(azimuths, std::vector<double>(30, 1e4)), false_positive_rate);
 }
 
-// About the normal towards the aim: sin^2 of the angle to it is uniform up to that of the cone, the cosine (the wrong
+// About the normal towards the aim, sin^2 of the angle to it is uniform up to that of the cone, the cosine (the wrong
 // twin) is not, and the azimuth about it is.
 TEST(RingLight, IsLambertianAboutTheWayToItsAim) {
     const RingLight ring = broad_ring();
@@ -311,8 +316,8 @@ TEST(RingLight, IsLambertianAboutTheWayToItsAim) {
     EXPECT_GT(chi_square_p(azimuths, uniform), false_positive_rate);
 }
 
-// E = L times the projected solid angle: the band is seen from its aim at elevations e +- atan(h / d), so
-// E = L pi (sin^2 up - sin^2 down) with the radiance L = flux / (pi area), area 2 pi d cos(e) 2 h.
+// The irradiance is E = L times the projected solid angle: the band is seen from its aim at elevations e +- atan(h /
+// d), so E = L pi (sin^2 up - sin^2 down) with the radiance L = flux / (pi area), area 2 pi d cos(e) 2 h.
 TEST(RingLight, LightsItsAimAsItsProjectedSolidAngleSays) {
     for (const double elevation : {pi / 6, pi / 3}) {
         RingLight ring = broad_ring();
@@ -323,7 +328,8 @@ TEST(RingLight, LightsItsAimAsItsProjectedSolidAngleSays) {
         const double area = 4 * pi * ring.distance * ring.elevation_cosine * ring.half_width;
         const double irradiance =
             (std::pow(std::sin(elevation + half_angle), 2) - std::pow(std::sin(elevation - half_angle), 2)) / area;
-        // From the farthest of the band to the rim of a spot of this radius, over which E changes by (spot / d)^2.
+        // The cone reaches from the farthest of the band to the rim of a spot of this radius, over which E changes by
+        // (spot / d)^2.
         constexpr double spot = 2;
         constexpr double sine = 0.15;
         constexpr int count = 400000;
@@ -335,12 +341,12 @@ TEST(RingLight, LightsItsAimAsItsProjectedSolidAngleSays) {
         }
         const double share = irradiance * pi * spot * spot / (sine * sine);
         EXPECT_LT(vkfv::test::share_z(landed, count, share), 4.0) << landed / count << " " << share;
-        // Wrong twin: the cosine of the elevation for its sine.
+        // The wrong twin has the cosine of the elevation for its sine.
         EXPECT_GT(vkfv::test::share_z(landed, count, share / std::tan(elevation)), 4.0);
     }
 }
 
-// Of two halves the one on lights from its own side, across the axis to the other.
+// The half of a ring that is switched on lights from its own side, across the axis to the other.
 TEST(RingLight, HalfOfItLightsFromItsSide) {
     for (const uint half : {0u, 1u}) {
         RingLight ring = broad_ring();
@@ -360,7 +366,7 @@ TEST(RingLight, HalfOfItLightsFromItsSide) {
 TEST(TurnOf, AgreesWithCosineAndSine) {
     for (int i = 0; i <= 20000; ++i) {
         const double u = i / 20000.0;
-        // A few roundings of 2^-53; in float three roundings of 2^-24. GLSL's own functions may be off by 2^-11.
+        // A few roundings of 2^-53 are left, in float three of 2^-24. GLSL's own functions may be off by 2^-11.
         EXPECT_NEAR(turn_of(u).cosine, std::cos(2 * pi * u), 1e-15);
         EXPECT_NEAR(turn_of(u).sine, std::sin(2 * pi * u), 1e-15);
         const float single = static_cast<float>(u);

@@ -107,7 +107,7 @@ class RunTest(unittest.TestCase):
         self.assertEqual(ratio.shape, (2,))
         self.assertTrue(numpy.isnan(sweep.column("share collected")).all())  # traced backward: there is none
         self.assertEqual(sweep.select(g=0.8), [sweep.records[1]])
-        # The same as in the table for people, to its digits.
+        # The values are those of the table for people, to its digits.
         lines = (sweep.folder / "sweep.csv").read_text(encoding="utf-8").splitlines()
         self.assertEqual(lines[0].split(",")[:3], ["g", "from", "signal to noise"])
         for line, value in zip(lines[1:], ratio):
@@ -154,7 +154,7 @@ class RunTest(unittest.TestCase):
         )
         with self.assertRaisesRegex(TypeError, "no value of a configuration"):
             list(settings({"trace.rays": None}))
-        # The program reads them back.
+        # The program reads nested settings back.
         self.assertEqual(vkfv.check(shared.configuration(), **{"scan.z_step_um": 4, "trace": {"rays": 3e5}})["images"], 7)
 
     def test_warnings(self):
@@ -248,7 +248,7 @@ class InterruptTest(unittest.TestCase):
         kept = len(list((out / "images").glob("z_*.tif")))
         self.assertTrue(0 < kept < LONG_IMAGES)
         self.assertFalse((out / "results.json").exists())
-        # The folder is free: the program is gone.
+        # The folder is free again, since the program is gone.
         vkfv.Stack(out).image(0)
         with open(out / ".lock", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -106,7 +106,7 @@ class FilesTest(unittest.TestCase):
         stacks = shared.stacks()
         for stack in stacks:
             self.assertEqual(undocumented(stack.folder, "stack"), [])
-        # And every file that is told of exists, but for those of runs that are under way.
+        # Every documented file exists, except for those of runs that are under way.
         written = [file.relative_to(stack.folder).as_posix() for stack in stacks for file in stack.folder.rglob("*")]
         for name in documented_files("stack"):
             if name != "partial_*":

@@ -107,7 +107,7 @@ class PlacesByWidth:
         every = numpy.array([self.place_of(table, found) for table in self.tables])
         rows, columns = numpy.indices(at.shape)
         place = every[narrow, rows, columns] * (1 - width + narrow) + every[narrow + 1, rows, columns] * (width - narrow)
-        # Elsewhere the stack's width, by straight lines between the images.
+        # Elsewhere the width is that of the stack, by straight lines between the images.
         points = numpy.arange(numpy.ceil(self.end) + 1)
         of_stack = numpy.where(points < self.end, self.place_of(self.tables[6], points), points)
         place = numpy.where(near, place, numpy.interp(found, points, of_stack))
@@ -163,7 +163,7 @@ class StackTest(unittest.TestCase):
         measured = self.stack.heights
         self.assertGreater(numpy.mean(self.stack.measured), 0.9)
         numpy.testing.assert_allclose(plane_slopes(measured), self.slopes, atol=0.008)
-        # Where the coordinates say that it is high, it is.
+        # Heights are high where the coordinates say so.
         high = measured.sel(x=slice(25, None), y=slice(20, None)).values
         low = measured.sel(x=slice(None, -25), y=slice(None, -20)).values
         self.assertGreater(numpy.nanmedian(high) - numpy.nanmedian(low), 3)
@@ -184,7 +184,7 @@ class StackTest(unittest.TestCase):
         largest = numpy.clip(curves.argmax(axis=0), 1, images - 2)
         rows, columns = numpy.indices(largest.shape)
         offset, curvature = maximum(*(numpy.log(curves[largest + d, rows, columns]) for d in (-1, 0, 1)))
-        # The same evaluation without the flat: of the images as they are.
+        # The truth is the program's own evaluation of the images as they are, without the flat.
         plain = vkfv.evaluate(self.stack.folder, out=shared.folder() / "plain", topography={"place_by_texture": False})
         inside = plain.measured
         self.assertGreater(inside.mean(), 0.8)
@@ -195,7 +195,7 @@ class StackTest(unittest.TestCase):
         heights = self.stack.z[0] + (self.stack.z[1] - self.stack.z[0]) * places
         error = heights[inside] - plain.heights.values[inside]
         self.assertLess(numpy.sqrt(numpy.mean(error**2)), 1e-4)
-        # The wrong twin: all curves as wide as the stack's.
+        # The wrong twin takes all curves as wide as the stack's.
         error = numpy.interp(largest + offset, numpy.arange(images), plain.results["focus_curves"]["z_um"]) - plain.heights.values
         self.assertGreater(numpy.sqrt(numpy.mean(error[inside]**2)), 1e-3)
 
@@ -208,7 +208,7 @@ class StackTest(unittest.TestCase):
         step = self.stack.z[1] - self.stack.z[0]
         known = numpy.isfinite(places)
         self.assertGreater(known.sum(), len(places) / 2)
-        # Two interpolations, each of a thousandth of a step.
+        # Two interpolations add up, each of a thousandth of a step.
         numpy.testing.assert_allclose(
             (numpy.array(at["z_um"]) - self.stack.z[0])[known] / step, places[known], atol=0.002)
         self.assertTrue((numpy.diff(at["z_um"]) > 0).all())
@@ -234,12 +234,14 @@ class StackTest(unittest.TestCase):
         at = numpy.arange(9.0)
         image = vkfv.Array(values, ("z", "y", "x"), {"z": numpy.zeros(1), "y": -at, "x": at})
         level = 1 + 1 / 9
-        # Means over 3 x 3 pixels around the bright one, over the mean level; and the roots of energies.
+        # The values by hand are means over 3 x 3 pixels around the bright one, over the mean level, and the roots of
+        # energies.
         by_hand = {
             "modified-laplacian": (4 + 4 * 1) / 9,
             "tenengrad": numpy.sqrt((4 * 2 + 4 * 4) / 9),
             "brenner": numpy.sqrt(4 / 9),
-            # At the bright pixel two bends of 4; beside it a step of 2, bends of -2 and 2; at its corners steps of 1, bends of -1.
+            # At the bright pixel there are two bends of 4; beside it a step of 2 and bends of -2 and 2; at its corners
+            # steps of 1 and bends of -1.
             "gradient-and-curvature": (4 + 4 * numpy.sqrt(8) + 4 * numpy.sqrt(3)) / 9,
             "standard-deviation": numpy.sqrt(8 / 81),
         }

@@ -48,7 +48,7 @@ def trace(x, z, l, m, edges=True):
     """From (x, 0, z) over the object plane to the detector: position, direction, path; None if an edge stops it."""
     p, d, index, path = [x, 0.0, z - working_distance], [l, m, math.sqrt(1 - l * l - m * m)], 1.0, 0.0
     for curvature, after, thickness, semi_diameter in system:
-        # |p + t d - centre| = radius, times the curvature.
+        # The ray meets the sphere where |p + t d - centre| = radius; the equation is multiplied by the curvature.
         half = curvature * sum(a * b for a, b in zip(p, d)) - d[2]
         rest = curvature * sum(a * a for a in p) - 2 * p[2]
         t = rest / (math.sqrt(half * half - curvature * rest) - half)
@@ -102,7 +102,7 @@ def evaluate(x, z, cone, sphere):
     centre, rms = spot(rays)
     samples = []
     for (p, d, path), w in rays:
-        # Back from the detector to the sphere about the centre.
+        # The ray goes back from the detector to the sphere about the centre.
         a = [p[0] - centre[0], p[1] - centre[1]]
         along = a[0] * d[0] + a[1] * d[1]
         square = a[0] ** 2 + a[1] ** 2

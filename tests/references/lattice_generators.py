@@ -10,9 +10,9 @@ import random
 
 import numpy
 
-# Most of what a backward path brings changes with its place in the pupil (components 2 and 3), less with that in the
-# pixel (0, 1) and with the direction to the source (4, 5), of which several are weighed against each other. Of five
-# shapes in three sizes, the one whose lattices did well in bench_paper_chain at 16 to 1024 paths a pixel.
+# A backward path's light changes most with its place in the pupil (components 2 and 3), less with that in the pixel (0,
+# 1) and with the direction to the source (4, 5), of which several are weighed against each other. The weights are
+# those, of five shapes in three sizes, whose lattices did well in bench_paper_chain at 16 to 1024 paths a pixel.
 WEIGHTS = [0.06, 0.06, 0.3, 0.3, 0.06, 0.06, 0.015, 0.015]
 ORDER = sorted(range(len(WEIGHTS)), key=lambda k: -WEIGHTS[k])
 LARGEST = 14

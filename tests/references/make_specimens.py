@@ -25,7 +25,7 @@ HEIGHT = 0.005  # mm
 # Grid lines of the letter, mm; each cell is high or low, so that walls meet cells along whole edges.
 X = numpy.array([-0.1, -0.04, -0.018, 0.02, 0.04, 0.1])
 Y = numpy.array([-0.1, -0.06, -0.012, 0.01, 0.038, 0.06, 0.1])
-# Rows from the top, as the letter is read.
+# The rows of the letter from the top, as it is read.
 LETTER = [
     ".....",
     ".###.",
@@ -57,7 +57,7 @@ def triangles():
             z = level[j, i]
             x0, x1, y0, y1 = X[i], X[i + 1], Y[j], Y[j + 1]
             quad((x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z))
-            # A wall where the next cell differs, facing the lower one.
+            # A wall stands where the next cell differs, facing the lower one.
             if i + 1 < columns and level[j, i + 1] != z:
                 other = level[j, i + 1]
                 quad((x1, y0, z), (x1, y0, other), (x1, y1, other), (x1, y1, z))

@@ -7,9 +7,10 @@ turns are Rodrigues' formula about the axes as they stand. Needs numpy (Debian: 
 
 import numpy as np
 
-# radius (mm), thickness to the next vertex (mm), index behind it: a 150 mm achromat of N-BK7 and SF5 at d.
+# Each surface has a radius (mm), a thickness to the next vertex (mm) and the index behind it: a 150 mm achromat of
+# N-BK7 and SF5 at d.
 SURFACES = [(91.62, 5.7, 1.5168), (-66.68, 2.2, 1.6727), (-197.7, 0.0, 1.0)]
-# Before the surface of that number: decentre x, y (mm), then tilts about x, y, z (rad) in this order.
+# Before the surface of that number the frame is decentred in x, y (mm), then tilted about x, y, z (rad) in this order.
 BREAKS = {0: (1.5, -0.8, 0.10, -0.15, 0.40), 2: (0.2, 0.1, 0.03, 0.02, -0.10)}
 SCREEN = 150.0  # mm, z of the plane where rays are read, in the frame of the first vertex before its break
 RAYS = [((0, 0, -10), (0, 0, 1)), ((5, 3, -10), (0.02, -0.03, 1)), ((-6, 2, -10), (-0.05, 0.04, 1)),

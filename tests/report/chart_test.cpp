@@ -1,4 +1,4 @@
-// Pictures of values: what is drawn stands where its numbers say, and reads in the right way up.
+// Values that are drawn stand where their numbers say, and read in the right way up.
 #include "report/chart.hpp"
 #include "report/contact_sheet.hpp"
 #include "report/png.hpp"
@@ -113,7 +113,7 @@ TEST(Ticks, AreRoundNumbersWithinTheEnds) {
     EXPECT_EQ(ticks(0, 10, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
     EXPECT_EQ(ticks(-0.5, 0.5, 4), (std::vector<double>{-0.5, 0, 0.5}));
     EXPECT_EQ(ticks(3, 3, 5), std::vector<double>{3});
-    // Ranges of which a double does not tell the steps apart.
+    // A double does not tell the steps of these ranges apart.
     for (const double from : {1.0, -1.0, 1e300, 1e-300}) {
         EXPECT_LE(ticks(from, std::nextafter(from, INFINITY), 5).size(), 12u) << from;
     }
@@ -143,7 +143,7 @@ TEST(Chart, PointsStandBetweenTheTicksOfTheirValues) {
         if (rectangle.attribute("width").as_double() == 6)
             markers.emplace_back(rectangle.attribute("x").as_double() + 3, rectangle.attribute("y").as_double() + 3);
     ASSERT_EQ(markers.size(), 3u);
-    // The second lies in the middle of the others on logarithmic axes; y of the page goes down.
+    // The second marker lies in the middle of the others on logarithmic axes; y of the page goes down.
     EXPECT_NEAR(markers[1].x, 0.5 * (markers[0].x + markers[2].x), 0.02);
     EXPECT_NEAR(markers[1].y, 0.5 * (markers[0].y + markers[2].y), 0.02);
     EXPECT_GT(markers[0].y, markers[2].y);
@@ -172,7 +172,8 @@ TEST(Map, ShowsTheUpperRowOnTopAndGapsInTheirColour) {
 }
 
 TEST(Map, KeepsItsShapeAndItsPlacesWhenItsValuesAreAveraged) {
-    // 3000 x 500 values, twice as high as wide: 3 by 1. The block of ones ends at three eighths of the width.
+    // The map has 3000 x 500 values, twice as high as wide: it is drawn 3 by 1. The block of ones ends at three eighths
+    // of the width.
     Map map{.title = "", .values = Grid<double>(3000, 500, 0.0), .pitch = {1, 2}};
     for (int row = 0; row < 500; ++row)
         for (int column = 0; column < 1125; ++column)
@@ -203,7 +204,7 @@ TEST(TopographyPicture, HasAPanelForEachMapAndTheProfile) {
                                                      .deviation = heights,
                                                      .all_in_focus = Grid<float>(8, 6, 1.0f),
                                                      .charts = {}}));
-    // Five maps and the colour bars of them all.
+    // The images are five maps and the colour bars of them all.
     EXPECT_EQ(all(document, "image").size(), 10u);
     EXPECT_STREQ(document.child("svg").child("title").child_value(), "a < b");
 }

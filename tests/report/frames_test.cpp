@@ -1,4 +1,4 @@
-// A stack's images for a page: means of blocks, few enough, in 8 bits.
+// The images that a page has of a stack are means of blocks, few enough, in 8 bits.
 #include "report/frames.hpp"
 
 #include <OpenImageIO/imageio.h>

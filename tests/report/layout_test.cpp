@@ -1,5 +1,4 @@
-// The picture of the instrument: its rays lie where the elements stand, and what it shows has the sizes and places it
-// says.
+// In the picture of the instrument rays lie where the elements stand, and sizes and places are those that it says.
 #include "report/layout.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -183,7 +182,7 @@ TEST_P(LayoutTest, RaysBendOnTheElements) {
             }
             const auto& element = instrument.elements.at(static_cast<std::size_t>(ray.elements[v]));
             const glm::dvec3 p = glm::transpose(element.pose.axes) * (ray.vertices[v] - element.pose.origin);
-            // Rounding of coordinates of some 100 mm, many times over.
+            // The tolerance is for rounding of coordinates of some 100 mm, many times over.
             EXPECT_NEAR(p.z, sag(element.surface, std::hypot(p.x, p.y)), 1e-9) << element.name.text();
             const bool leaves_ideal_lens = v > 0 && ray.elements[v - 1] == ray.elements[v];
             if ((element.surface.flags & physics::f64::SURFACE_CLIPPED) != 0 && !leaves_ideal_lens) {
@@ -241,7 +240,7 @@ TEST_P(LayoutTest, RaysEndWhereTheSequentialTrainsSay) {
     }
 }
 
-// Every point of every path, line, rectangle and text, in user units.
+// All points of every path, line, rectangle and text, in user units.
 std::vector<glm::dvec2> points_of(const pugi::xml_node& node) {
     std::vector<glm::dvec2> points;
     for (const auto& found : node.select_nodes(".//path[not(ancestor::g[@clip-path])]")) {
@@ -289,7 +288,7 @@ TEST_P(LayoutTest, IsAPictureThatHoldsAllItShows) {
     }
 }
 
-// Leaders end at what they name, and text does not cover text.
+// Leaders end at the elements that they name, and text does not cover text.
 TEST_P(LayoutTest, LabelsKeepApart) {
     pugi::xml_document document;
     ASSERT_TRUE(document.load_string(shown_.picture.c_str()));
@@ -343,7 +342,7 @@ TEST(Layout, IsTheSameTwice) {
     EXPECT_NE(report::layout_svg(instrument, "name"), report::layout_svg(instrument, "other"));
 }
 
-// Measured with the picture's own scale bar, as a reader would.
+// Lengths are measured with the picture's own scale bar, as a reader would.
 TEST(Layout, IsToScale) {
     const auto instrument = optics::assemble(microscope());
     pugi::xml_document document;

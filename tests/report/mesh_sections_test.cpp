@@ -1,4 +1,4 @@
-// What the plane of drawing cuts of a mesh.
+// The plane of drawing cuts a mesh in lines that closed forms know.
 #include "report/mesh_sections.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace vkfv::report {
 namespace {
 
-// Corners at +-1; bit k of a corner's number: + along axis k.
+// A cube with corners at +-1; bit k of a corner's number is set if the corner lies at + along axis k.
 optics::Facets unit_cube() {
     optics::Facets cube;
     for (int corner = 0; corner < 8; ++corner) {
@@ -52,7 +52,7 @@ TEST(MeshSections, AnOpenMeshIsCutAsALineWithEnds) {
     EXPECT_NEAR(lines[0].points.back().y, 1, 1e-12);
 }
 
-// Time is not the square of their number: that would be minutes.
+// The time does not go with the square of the number of bodies: that would be minutes.
 TEST(MeshSections, ManyBodiesAreManyLines) {
     optics::Facets bodies;
     constexpr std::uint32_t count = 20000;

@@ -1,4 +1,4 @@
-// The page of HTML: it is whole, and nothing that it shows becomes part of its markup.
+// The page of HTML is whole, and no text that it shows becomes part of its markup.
 #include "report/page.hpp"
 
 #include "report/page_files.hpp"
@@ -73,7 +73,7 @@ TEST(Page, CarriesItsLibrariesAndTheirLicences) {
         ++licences;
     }
     EXPECT_EQ(licences, 2);
-    // Nothing is asked of a network, but by what is never run: names of other formats in the libraries.
+    // The page asks no network for anything, except by code that is never run: names of other formats in the libraries.
     EXPECT_THAT(text, testing::Not(testing::HasSubstr("<link")));
     EXPECT_THAT(text, testing::Not(testing::HasSubstr(" src=\"http")));
     EXPECT_THROW(report::page_file("none.js"), std::out_of_range);

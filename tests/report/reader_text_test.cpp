@@ -1,4 +1,4 @@
-// Numbers and units as a reader writes them.
+// Numbers and units are written as a reader writes them.
 #include "report/reader_text.hpp"
 
 #include <gmock/gmock.h>

@@ -19,7 +19,7 @@ MOST_SHARE = 0.15  # of all lines of src and shaders, of a room or of a sub-room
 SHADER_FOLDERS = ("physics", "focus", "device", "estimate", "waves")
 INCLUDE = re.compile(r'^\s*#\s*include "([^"]+)"', re.MULTILINE)
 SOURCES = (".cpp", ".hpp", ".glsl", ".comp")
-# Programs of their own inside of a room's folder, with link lines of their own.
+# Programs inside of a room's folder that have link lines of their own.
 APART = ("images/openimageio", "app/memory")
 
 

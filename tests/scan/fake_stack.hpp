@@ -108,7 +108,7 @@ inline void write_bytes(const std::filesystem::path& file, const std::string& by
     std::ofstream(file, std::ios::binary) << bytes;
 }
 
-// What must not depend on interruptions: every file but the timings, by relative path.
+// The results that must not depend on interruptions: every file but the timings, by relative path.
 inline std::map<std::string, std::string> result_of(const std::filesystem::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

@@ -22,7 +22,7 @@ constexpr int images = 32;
 constexpr int kills = 10;
 constexpr const char* victim_flag = "--run-fake-stack";
 
-// Beside the folder: the victim is past the start of its libraries.
+// A file beside the folder: it says that the victim is past the start of its libraries.
 fs::path sign_of_life(const fs::path& folder) {
     return folder.string() + ".alive";
 }
@@ -96,7 +96,7 @@ TEST(Kill, AKilledStackEndsInTheSameBytes) {
     EXPECT_EQ(stored_images(folder.path()), images);
     EXPECT_EQ(differing_files(result_of(folder.path()), result_of(whole.path())), "");
 
-    // The wrong twin: one image of another seed does not pass for the same.
+    // The wrong twin has one image of another seed, which does not pass for the same.
     const FreshFolder other("seed");
     run(other.path(), FakeTracer(2), describe(images));
     fs::copy_file(other.path() / "images/z_0007.tif", folder.path() / "images/z_0007.tif",

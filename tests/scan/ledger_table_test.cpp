@@ -1,4 +1,4 @@
-// The ledger of a stack, read again.
+// The ledger of a stack is read back as it was written.
 #include "scan/ledger_table.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a stage does to positions, against closed forms, and what tracers make of it.
+// The errors of a stage move positions as closed forms say, and tracers take the moved positions.
 #include "scan/staged_tracer.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -92,7 +92,7 @@ TEST(Stage, JitterIsIndependentAndDoesNotAddUp) {
     EXPECT_NEAR(neighbours, 0, 5 / std::sqrt(4000.0));
     stage.seed = 2;
     EXPECT_NE(errors(StageMotion(stage, positions), positions), found);
-    // The scale sees it, and says so with noise of its own.
+    // The scale sees the error, and reads it with noise of its own.
     stage.reading_noise = 0.0001;
     const StageMotion read(stage, positions);
     std::vector<double> apart;
@@ -133,7 +133,7 @@ TEST(Stage, LagsOnTheWayDown) {
     }
 }
 
-// Images are taken one after the other, and the focal plane goes on upwards meanwhile.
+// Images are taken one after the other, and the focal plane drifts upwards meanwhile.
 TEST(Stage, DriftsFromImageToImage) {
     const auto positions = steps(21, 0.001);
     Stage stage;
@@ -182,9 +182,9 @@ TEST(Stage, Vibrates) {
     EXPECT_NEAR(deviation(means), 0.0002 / std::sqrt(2.0) * 2 / pi, 2e-6);
 }
 
-// The mean square is the spectrum's integral, and what lies below 40 Hz the integral to there: of 10 to 20 Hz flat, and
-// of a triangle over 60 to 80 Hz, of which a quarter lies below 70 Hz. Of a band B looked at for T seconds the mean
-// square is known to 1 / sqrt(B T) of it: the bounds are four times that, of four seeds together.
+// The mean square is the spectrum's integral, and the power below 40 Hz the integral to there: of a flat band of 10 to
+// 20 Hz, and of a triangle over 60 to 80 Hz, of which a quarter lies below 70 Hz. The mean square of a band B that is
+// looked at for T seconds is known to 1 / sqrt(B T) of it: the bounds are four times that, of four seeds together.
 TEST(Stage, VibratesByASpectrum) {
     constexpr int images = 8192, seeds = 4;
     constexpr double interval = 0.005; // 41 s, up to 100 Hz
@@ -194,7 +194,7 @@ TEST(Stage, VibratesByASpectrum) {
     stage.vibration_frequencies = {10, 20, 20.001, 60, 80};
     stage.vibration_densities = {2e-9, 2e-9, 0, 0, 4e-9};
     EXPECT_FALSE(stage.still());
-    // G. Goertzel, Am. Math. Monthly 65 (1958) 34.
+    // The power is found by the algorithm of G. Goertzel, Am. Math. Monthly 65 (1958) 34.
     const auto power_below = [&](const std::vector<double>& found, double limit) {
         double power = 0;
         for (int bin = 1; bin / (images * interval) < limit; ++bin) {
@@ -259,7 +259,7 @@ TEST(StagedTracer, ExposesWhereTheStageStands) {
     EXPECT_NEAR(deviation(light), 0.1, 0.06);
 }
 
-// The mean of an exposure's moments, with random numbers of each one's own.
+// An image is the mean over the moments of an exposure, each with random numbers of its own.
 TEST(StagedTracer, AveragesOverTheMomentsOfAnExposure) {
     const auto positions = steps(21, 0.001);
     Stage stage;

@@ -1,4 +1,5 @@
-// What files of several images state of them, in the words of the programs that write them.
+// Files of several images state the numbers of channels, heights and frames, pitches and dates in the words of the
+// programs that write them.
 #include "scan/stated_series.hpp"
 
 #include "core/messages/error.hpp"
@@ -89,7 +90,8 @@ TEST(StatedSeries, KnowsEveryUnit) {
     EXPECT_THAT(pixels.doubts, testing::ElementsAre(testing::HasSubstr("without a unit")));
 }
 
-// The unit of heights may be another than that of the pixels, and the tags' counts where the text has none.
+// The unit of heights may be another than that of the pixels; where the text has no pitch, it follows from the tags'
+// counts.
 TEST(StatedSeries, HasUnitsOfEachAxis) {
     const auto stated = imagej("images=3\nslices=3\nunit=mm\nzunit=nm\nspacing=250\n", 3, 1000);
     EXPECT_NEAR(stated.pitch_x.value(), 1e-3, 1e-15);

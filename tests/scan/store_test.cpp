@@ -116,7 +116,7 @@ TEST(ImageStore, ImagesTellTheirPitchHeightAndDistance) {
     EXPECT_THAT(text, HasSubstr("\nimage=2\nz_um=0.4\n"));
 }
 
-// images.tif: pages are read by ImageJ's rule, all values behind each other up to the file's end.
+// The pages of images.tif are read by ImageJ's rule: all values stand behind each other up to the file's end.
 TEST(ImageStore, AllImagesInOneFileAreTheSingleOnes) {
     const FreshFolder folder("stack_file");
     run(folder.path(), FakeTracer(), describe());
@@ -137,7 +137,7 @@ TEST(ImageStore, AllImagesInOneFileAreTheSingleOnes) {
         }
     }
     EXPECT_LE(bytes.size(), stack_file_bytes(4, rows * columns, PixelType::float32));
-    // It has a checksum, and a damaged image does not enter it.
+    // The file of all images has a checksum, and a damaged image does not enter it.
     EXPECT_THAT(bytes_of(folder.path() / "checksums.sha256"), HasSubstr(std::string(stack_file_name)));
     write_bytes(folder.path() / "images/z_0002.tif", "no image");
     EXPECT_THROW(write_stack_file(store), InputError);
@@ -265,7 +265,7 @@ TEST(ImageStore, ShardsShareAFolder) {
     const FreshFolder shared("shared");
     run(whole.path(), FakeTracer(), describe(9));
     {
-        // All of them at a time; nobody else may write, nor the same shard twice.
+        // All shards write at a time; nobody else may, nor the same shard twice.
         ImageStore first(shared.path(), describe(9), {0, 3});
         ImageStore second(shared.path(), describe(9), {1, 3});
         EXPECT_THROW(ImageStore(shared.path(), describe(9)), FolderInUse);
@@ -439,7 +439,7 @@ TEST(ImageStore, OneProgramAtATime) {
     EXPECT_EQ(opening_message(folder.path()), "");
 }
 
-// Of images that a device has at a time; those that are stored are not begun again.
+// A tracer that counts the images that a device has at a time; images that are stored are not begun again.
 class AheadTracer final : public FakeTracer {
   public:
     std::future<trace::Image>

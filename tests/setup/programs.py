@@ -14,12 +14,12 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# These start what their arguments name.
+# Programs that start the program that their arguments name.
 WRAPPERS = {"command", "env", "exec", "nice", "sudo", "time", "timeout", "xargs", "xvfb-run"}
-# Functions of our scripts that do so, with how many arguments stand before the program.
+# Functions of our scripts that start a program, with the number of arguments that stand before it.
 FUNCTIONS = {"step": 1, "inside": 0, "inside_root": 1}
 SHELLS = {"bash", "sh"}
-# C++ functions of the tests that start what a string says.
+# C++ functions of the tests that start the program which a string names.
 RUNNERS = r"(?:std::system|popen|shell|run_script)"
 
 
@@ -187,7 +187,7 @@ def of_cmake(text, file):
         words = found[1].split()
         names = [word for word in words[1:] if re.fullmatch(r"[a-z][\w.+-]*", word)]
         line = text.count("\n", 0, text.find(found[0])) + 1
-        # One of several names suffices: the first is what the table is to have.
+        # Any of several names suffices: the first is the one that the table should have.
         starts += [Start(name, file, line, asked="REQUIRED" not in words) for name in names[:1]]
     for found in re.finditer(r"(?<!NAME )\bCOMMAND\s+([a-z][\w.+-]*)", code):
         starts.append(Start(found[1], file, text.count("\n", 0, text.find(found[0])) + 1))
@@ -246,7 +246,7 @@ def tracked(changelog=False):
     texts = {}
     for name in listed:
         path = ROOT / name
-        # The program itself starts none but what its options name.
+        # The program itself starts no other programs than its options name.
         if not name or name.startswith(("src/", "assets/", "tests/data/", "tests/fuzz/corpus/")) and not name.endswith(".cmake"):
             continue
         if name == "CHANGELOG.md" and not changelog or not path.is_file():

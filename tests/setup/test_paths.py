@@ -5,7 +5,7 @@ import unittest
 
 import programs
 
-# A path that starts at the top of the repository; not a part of another one.
+# A path that starts at the top of the repository and is not a part of another one.
 PATH = re.compile(r"(?<![\w/.$}-])(?:tools|tests|shaders|src)/[\w./*-]*\w(?![*{\w]|/[*A-Z$])")
 # Words in capitals stand for what a reader puts in.
 STANDS_FOR = re.compile(r"(^|[/_.])[A-Z]{4,}")

@@ -33,7 +33,8 @@ class Packages:
         fields = "${Package}\t${Essential}\t${Priority}\t${Pre-Depends}, ${Depends}\n"
         said = subprocess.run(["dpkg-query", "--show", f"--showformat={fields}"], capture_output=True, text=True, check=True)
         rows = [line.split("\t") for line in said.stdout.splitlines()]
-        # Of a smallest root, or of the table: a package of it, or what one of them needs (python3-minimal of python3).
+        # A package is given if it is of the smallest root or of the table, or if one of the table needs it
+        # (python3-minimal of python3).
         self.given = {name for name, essential, priority, _ in rows if essential == "yes" or priority == "required"} | names
         self.given |= {word.strip().split(":")[0].split(" ")[0] for name, _, _, needs in rows if name in names
                        for word in re.split(r"[,|]", needs) if word.strip()}

@@ -1,4 +1,5 @@
-// Standards of ISO 25178-70: closed forms of their heights, and their dimensions, found on their truth, are nominal.
+// Standards of ISO 25178-70 have the heights of closed forms, and the dimensions that are found on their truth are
+// nominal.
 #include "core/mathematics/units.hpp"
 #include "dimensions/evaluate.hpp"
 #include "specimen/description.hpp"
@@ -17,7 +18,7 @@ using vkfv::test::over;
 
 namespace {
 
-// Pixels of 2 um over 0.3 x 0.2 mm.
+// The truth of a shape over 0.3 x 0.2 mm, with pixels of 2 um.
 surface::HeightMap truth_of(const Shape& shape) {
     return truth(make({.shape = shape}), 150, 100, -0.149, -0.099, 0.002, 0.002);
 }
@@ -29,7 +30,7 @@ std::map<std::string, dimensions::Dimension> dimensions_of(const Shape& shape) {
     return named;
 }
 
-// value is nominal to within a share of it.
+// Expects that the value is nominal to within a share of it.
 void expect_nominal(const std::map<std::string, dimensions::Dimension>& found, const std::string& name, double share) {
     ASSERT_TRUE(found.contains(name)) << name;
     const auto& one = found.at(name);
@@ -78,7 +79,7 @@ TEST(StandardsAsSold, ADeterministicTextureRepeatsItselfAndHasNoRandomNumber) {
     texture.hurst = 0.5;
     const auto map = truth_of(texture);
     EXPECT_NEAR(map.height(20, 30), map.height(70, 80), 1e-9);
-    // The rule, written out anew at one point.
+    // The rule is written out anew at one point.
     double sum = 0, squares = 0;
     int k = 0;
     for (int m = 0; m <= 3; ++m)

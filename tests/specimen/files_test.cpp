@@ -1,4 +1,4 @@
-// Specimens from files: what is written is read, a letter reads as the letter, and damage is named.
+// Specimens from files are what was written, a letter reads as the letter, and damage is named.
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"
 #include "specimen/kinds.hpp"
@@ -116,7 +116,7 @@ struct Gltf {
 TEST_F(Files, GltfIsTheMeshWithItsNodesTransforms) {
     Gltf gltf;
     expect_tetrahedron(read_gltf(write("plain.gltf", gltf.text()), {}), [](glm::dvec3 p) { return p; });
-    // A parent that moves, over a child that scales and then turns by 90 degrees about z: x to y, y to -x.
+    // A parent node moves; its child scales and then turns by 90 degrees about z: x to y, y to -x.
     gltf.nodes = R"([{"translation": [10, 20, 30], "children": [1]},
                      {"mesh": 0, "scale": [2, 3, 4], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476]}])";
     expect_tetrahedron(read_gltf(write("nodes.gltf", gltf.text()), {}),
@@ -155,8 +155,8 @@ TEST(ExampleSpecimens, ReadAsTheLetterF) {
     gltf.unit = 1000;
     gltf.centre = false;
     expect_letter(make({.shape = gltf}), 0, 0.005);
-    // Centred: the mean of the uppermost surface is at 0. The letter covers (22 x 120 + 58 x 22 + 38 x 22)
-    // um^2 of 200 x 200; of the 1280 lines of points that measure it each edge may be one off.
+    // Centred, the mean of the uppermost surface is at 0. The letter covers (22 x 120 + 58 x 22 + 38 x 22) um^2 of 200
+    // x 200; of the 1280 lines of points that measure it each edge may be one off.
     gltf.centre = true;
     const double share = (22.0 * 120 + 58 * 22 + 38 * 22) / 40000;
     const auto centred = truth(make({.shape = gltf}), 1, 1, -0.03, 0, 0.002, 0.002);
@@ -164,7 +164,7 @@ TEST(ExampleSpecimens, ReadAsTheLetterF) {
 }
 
 TEST_F(Files, ImageRowsStartAtTheTopAndValuesScale) {
-    // 3 x 2 points, 8 bit: the file's first row is the highest y.
+    // The image has 3 x 2 points of 8 bits: the file's first row is the highest y.
     const auto file =
         write("map.pgm", std::string("P5 3 2 255\n") + '\x00' + '\x33' + '\xff' + '\x66' + '\x99' + '\xcc');
     const Grid<float> grid = read_image(file, {});

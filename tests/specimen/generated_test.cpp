@@ -1,4 +1,5 @@
-// Generated specimens: statistics of the irregular ones, and facets against the continuous function.
+// Irregular generated specimens have the statistics asked for, and the facets of others are near the continuous
+// function.
 #include "core/mathematics/fourier.hpp"
 #include "specimen/analytic.hpp"
 #include "specimen/intersector.hpp"
@@ -73,8 +74,8 @@ TEST(Rough, HasTheHeightAndTheCorrelationItIsAskedFor) {
         EXPECT_NEAR(mean(field.heights), 0, 1e-9);
         at_length.push_back(autocorrelation(field.heights, 5));
     }
-    // exp(-1) at the correlation length; removing the mean takes pi l^2 / A (1 - exp(-1)) of it. |t| > 4.07
-    // has the probability 1e-3 for 15 degrees of freedom. The twin: a length 10 % greater.
+    // The autocorrelation is exp(-1) at the correlation length; removing the mean takes pi l^2 / A (1 - exp(-1)) of it.
+    // |t| > 4.07 has the probability 1e-3 for 15 degrees of freedom. The wrong twin has a length 10 % greater.
     const double bias = pi * 25.0 / (201.0 * 201.0) * (1 - std::exp(-1.0));
     EXPECT_LT(t_value(at_length, std::exp(-1.0) - bias), 4.07);
     EXPECT_GT(t_value(at_length, std::exp(-1.0 / 1.21)), 4.07);
@@ -87,14 +88,14 @@ TEST(Roughness, LeavesWhatTheFilterLeavesOfTheNoise) {
             make({.shape = over<Plane>(0.1, 0.0005), .roughness = Roughness{0.0002, 0.001, 0.0005, seed}});
         remaining.push_back(std::pow(rms(std::get<HeightField>(specimen.geometry).heights), 2));
     }
-    // In squares, which are unbiased; 4.44 is the level 1e-3 for 11 degrees of freedom. The twin: a kernel 5
-    // % wider.
+    // Squares are compared, which are unbiased; 4.44 is the level 1e-3 for 11 degrees of freedom. The wrong twin has a
+    // kernel 5 % wider.
     const auto expected = [](double kernel) { return std::pow(0.0002 * 0.0005 / (2 * std::sqrt(pi) * kernel), 2); };
     EXPECT_LT(t_value(remaining, expected(0.001)), 4.44);
     EXPECT_GT(t_value(remaining, expected(0.00105)), 4.44);
 }
 
-// Heights of a waved lattice, whose mean deviations are known.
+// The heights are those of a waved lattice, whose mean deviations are known.
 TEST(Roughness, IsToldByItsHeights) {
     constexpr int points = 720;
     Grid<double> waves(points, points);
@@ -125,10 +126,10 @@ TEST(Roughness, IsAsHighAsItIsAskedFor) {
     roughness.ra = 0.00005;
     const RoughnessHeights told = roughness_heights(made(roughness));
     EXPECT_NEAR(told.ra, 0.00005, 1e-10);
-    // Of normal heights sqrt(2 / pi) of Sq; rows of 100 um lose little of their own means.
+    // The mean absolute value of normal heights is sqrt(2 / pi) of Sq; rows of 100 um lose little of their own means.
     EXPECT_NEAR(told.sa / told.sq, std::sqrt(2 / pi), 0.02);
     EXPECT_NEAR(told.ra / told.sa, 1, 0.1);
-    // The same surface, of another scale.
+    // The surface by Ra is the surface by Sq at another scale.
     const Grid<double> by_ra = made(roughness);
     const double factor = by_sq.values[0] / by_ra.values[0];
     EXPECT_NEAR(by_sq.values[12345], factor * by_ra.values[12345], 1e-9);
@@ -139,7 +140,7 @@ TEST(Roughness, HasTheWavelengthsOfItsBandAlone) {
     roughness.sq = 0.0002;
     roughness.shortest = 0.005;
     roughness.longest = 0.02;
-    // 200 points of 0.5 um: a length of small factors, so that the made field is all of the periodic one.
+    // The plane has 200 points of 0.5 um: a length of small factors, so that the made field is all of the periodic one.
     auto plane = over<Plane>(0.0995, 0.0005);
     const auto power_outside = [&](double shortest, double longest) {
         const Specimen specimen = make({.shape = plane, .roughness = roughness});
@@ -218,7 +219,7 @@ TEST(Generated, FacetsAndFunctionAreMetAtTheSamePlaces) {
     auto sphere = over<Sphere>(size, pitch);
     sphere.radius = 0.1;
     sphere.height = 0.05; // the rim at 0.087 is outside the footprint's corner at 0.071
-    // R^2 / (R^2 - r^2)^(3/2) along the meridian.
+    // The second derivative along the meridian is R^2 / (R^2 - r^2)^(3/2).
     pairs.push_back({"sphere", sphere, 0.01 / std::pow(0.01 - 0.005, 1.5)});
     auto sinusoid = over<Sinusoid>(size, pitch);
     sinusoid.amplitude = 0.001;
@@ -228,7 +229,7 @@ TEST(Generated, FacetsAndFunctionAreMetAtTheSamePlaces) {
     chirp.amplitude = 0.001;
     chirp.period = 0.04;
     chirp.period_stop = 0.015;
-    // A (w^2 + w'), the frequency rising by (1/0.015 - 1/0.04) over 0.1 mm.
+    // The second derivative is at most A (w^2 + w'), the frequency rising by (1/0.015 - 1/0.04) over 0.1 mm.
     pairs.push_back({"chirp", chirp, 0.001 * (std::pow(2 * pi / 0.015, 2) + 2 * pi * (1 / 0.015 - 1 / 0.04) / 0.1)});
     RandomRays random(7);
     for (const Pair& pair : pairs) {
@@ -236,8 +237,8 @@ TEST(Generated, FacetsAndFunctionAreMetAtTheSamePlaces) {
         const Specimen continuous = make({.shape = represented(pair.shape, Representation::analytic)});
         const Intersector on_function(continuous);
         const auto r = record(continuous, 1);
-        // Linear interpolation in a triangle: h'' / 8 of the square of its longest edge (the diagonal; for
-        // shapes along x its extent in x is the pitch, which is less). And heights rounded to float.
+        // Linear interpolation in a triangle is off by h'' / 8 of the square of its longest edge (the diagonal; for
+        // shapes along x its extent in x is the pitch, which is less). Heights are also rounded to float.
         const double between = pair.second_derivative * 2 * pitch * pitch / 8 + 6e-8 * std::max(-r.bottom, r.top);
         int compared = 0;
         for (int i = 0; i < 3000; ++i) {
@@ -254,8 +255,8 @@ TEST(Generated, FacetsAndFunctionAreMetAtTheSamePlaces) {
             ASSERT_EQ(a.found, b.found) << pair.name;
             if (a.found == 1u) {
                 ++compared;
-                // The gap between the two surfaces, as far as the ray stretches it; and rounding of the
-                // distance.
+                // The tolerance is the gap between the two surfaces, as far as the ray stretches it, and rounding of
+                // the distance.
                 EXPECT_NEAR(a.distance, b.distance, between / approach + 1e-13) << pair.name;
             }
         }
@@ -278,8 +279,8 @@ TEST(Generated, FacetsAndLatticeOfARoughSurfaceDifferByTheirInterpolation) {
         const auto b = on_function.hit(origin, {0, 0, -1});
         ASSERT_EQ(a.found, 1u);
         ASSERT_EQ(b.found, 1u);
-        // The second derivative of such a field in one direction has the standard deviation sqrt(12) sq /
-        // l^2; five of them, along the triangle's diagonal.
+        // The second derivative of such a field in one direction has the standard deviation sqrt(12) sq / l^2; the
+        // tolerance is five of these, along the triangle's diagonal.
         EXPECT_NEAR(a.distance, b.distance, 5 * std::sqrt(12.0) * 0.0005 / 1e-4 * 2 * 0.0005 * 0.0005 / 8);
         squares += (a.distance - b.distance) * (a.distance - b.distance);
         ++count;

@@ -1,4 +1,5 @@
-// glTF 2.0: what the standard lets change the triangles is honoured or refused, never left out in silence.
+// Where the standard of glTF 2.0 lets a file change the triangles, the change is honoured or refused, never left out in
+// silence.
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"
 
@@ -60,7 +61,7 @@ struct Text {
                R"(, "meshes": [{"primitives": [)" + primitive + "]" + mesh + R"(}], "accessors": )" + accessors +
                R"(, "bufferViews": )" + views + R"(, "buffers": )" + buffer + "}";
     }
-    // The same as a binary container.
+    // The text and its bytes as a binary container (GLB).
     std::string binary() const {
         Text inner = *this;
         inner.buffers = R"([{"byteLength": )" + std::to_string(bytes.size()) + "}]";
@@ -72,7 +73,7 @@ struct Text {
         return "glTF" + word(2) + word(12 + 8 + json.size() + 8 + chunk.size()) + word(json.size()) + "JSON" + json +
                word(chunk.size()) + std::string("BIN\0", 4) + chunk;
     }
-    // A second accessor, after the positions.
+    // Adds an accessor, after the positions.
     void add(const std::string& more, const std::string& accessor, const std::string& view_keys = "") {
         const std::size_t views_before = static_cast<std::size_t>(std::count(views.begin(), views.end(), '{'));
         bytes.resize((bytes.size() + 3) / 4 * 4, '\0');
@@ -99,7 +100,7 @@ std::string message_of(const std::string& bytes) {
     return "no error";
 }
 
-// What the log says meanwhile.
+// The log that some work leaves.
 std::string log_of(const std::function<void()>& work) {
     std::ostringstream stream;
     const auto before = spdlog::default_logger();
@@ -123,7 +124,7 @@ TEST_F(Gltf, TextAndBinaryAreTheSame) {
     expect_points(parse_gltf(Text{}.text(), "part.gltf"), plain);
     expect_points(parse_gltf("\xef\xbb\xbf" + Text{}.text(), "part.gltf"), plain);
     expect_points(parse_gltf(Text{}.binary(), "part.glb"), plain);
-    // A buffer beside the file, with blanks in its name.
+    // The buffer lies beside the file, with blanks in its name.
     write("the points.bin", floats(triangle));
     const auto file = write(
         "beside.gltf", with([](Text& t) { t.buffers = R"([{"byteLength": 36, "uri": "the%20points.bin"}])"; }).text());
@@ -269,7 +270,7 @@ TEST_F(Gltf, ExtensionsOfAppearanceAndLaterMinorVersionsAreRead) {
     for (const char* asset : {R"({"version": "2.1"})", R"({"version": "3.0", "minVersion": "2.0"})"}) {
         expect_points(parse_gltf(with([&](Text& t) { t.asset = asset; }).text(), "part.gltf"), plain);
     }
-    // Used but not required: the file is whole without it.
+    // An extension that is used but not required may be unknown: the file is whole without it.
     expect_points(
         parse_gltf(with([](Text& t) { t.head = R"(, "extensionsUsed": ["EXT_unheard_of"])"; }).text(), "part.gltf"),
         plain);
@@ -278,7 +279,7 @@ TEST_F(Gltf, ExtensionsOfAppearanceAndLaterMinorVersionsAreRead) {
 TEST_F(Gltf, InstancesStandWhereTheyArePlaced) {
     Text text;
     text.add(floats({{10, 0, 0}, {0, 20, 0}}), R"("componentType": 5126, "type": "VEC3", "count": 2)");
-    // None, and 90 degrees about z, as normalised shorts.
+    // The rotations are none, and 90 degrees about z, as normalised shorts.
     std::string rotations;
     for (const double part : {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}) {
         rotations += raw(static_cast<std::int16_t>(std::lround(part * 32767)));
@@ -293,7 +294,7 @@ TEST_F(Gltf, InstancesStandWhereTheyArePlaced) {
         text.head = head;
         const FileMesh mesh = parse_gltf(text.text(), "part.gltf");
         ASSERT_EQ(mesh.triangles.size(), 2u);
-        // The second: scaled, then x to y and y to -x, then moved, then the node's own.
+        // The second instance is scaled, then turned (x to y and y to -x), then moved, and then moved as its node is.
         const std::vector<glm::dvec3> expected = {{10, 0, 100}, {11, 0, 100}, {10, 2, 100.5},
                                                   {0, 20, 100}, {0, 22, 100}, {-6, 20, 102}};
         for (std::size_t k = 0; k < expected.size(); ++k) {
@@ -370,7 +371,7 @@ TEST_F(Gltf, WhatLeavesTheTrianglesAloneIsWarnedOf) {
     EXPECT_THAT(log_of([&] { (void)parse_gltf(Text{}.text(), "part.gltf"); }), IsEmpty());
 }
 
-// One mesh placed so often that it does not fit into memory, from a file of some kilobytes.
+// A mesh is placed so often that it does not fit into memory, from a file of some kilobytes.
 TEST_F(Gltf, CopiesAreCountedBeforeTheyAreMade) {
     Text text;
     constexpr int points = 30000;
@@ -385,7 +386,7 @@ TEST_F(Gltf, CopiesAreCountedBeforeTheyAreMade) {
                       HasSubstr("at most 67108864 of each in all")));
 }
 
-// Work on a stack of so many bytes.
+// Does the work on a stack of so many bytes.
 void on_stack(std::size_t bytes, const std::function<void()>& work) {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
@@ -428,7 +429,7 @@ TEST_F(Gltf, ChainsOfNodesAndNestedExtrasNeedNoStack) {
                         HasSubstr("JSON = brackets nested 101 deep: expected at most 100 levels of brackets. Remove"));
             EXPECT_THAT(message_of(nested(20000, open, close).binary()), HasSubstr("part.gltf@"));
         }
-        // Brackets within strings are none.
+        // Brackets within strings are no nesting.
         EXPECT_EQ(
             message_of(with([](Text& t) { t.head = R"(, "extras": "\"[[[)" + std::string(1000, '[') + "\""; }).text()),
             "no error");
@@ -460,7 +461,7 @@ TEST_F(Gltf, BuffersAreRegularFiles) {
         }
     }
     close(listener);
-    // What no triangle needs is not opened.
+    // Buffers and images that no triangle needs are not opened.
     const auto file = write("unused.gltf", with([](Text& t) {
                                                t.head = R"(, "images": [{"uri": "pipe"}])";
                                                t.buffers = R"([{"byteLength": 36, "uri": "a.bin"}, )"

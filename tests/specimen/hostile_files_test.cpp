@@ -1,4 +1,4 @@
-// STL and images that others made, on purpose or not: read, or refused for what is wrong with them.
+// STL files and images that others made, on purpose or not, are read, or refused for the fault that they have.
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"
 #include "specimen/shapes.hpp"
@@ -27,7 +27,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using Hostile = test::TemporaryFiles;
 
-// A cube of side 1, its first vertex at another place.
+// A cube of side 1, with its first vertex at another place.
 std::vector<std::array<glm::vec3, 3>> cube(const glm::vec3& first = {0, 0, 0}) {
     const auto corner = [&](int k) {
         return k == 0
@@ -87,7 +87,7 @@ TEST_F(Hostile, StlWithAnyEndsOfLinesAndAByteOrderMarkIsRead) {
         }
         std::string text = ascii(line_end);
         text.replace(text.rfind("outer"), 5, "inner");
-        // The last facet's second line: 1 + 11 * 7 + 2.
+        // The fault is in the last facet's second line: 1 + 11 * 7 + 2.
         EXPECT_THAT(stl_message(text), HasSubstr("part.stl:80:1: STL = `inner`: expected `outer`"));
     }
 }
@@ -135,7 +135,7 @@ TEST_F(Hostile, VertexFarOffIsNamed) {
 }
 
 TEST_F(Hostile, FacetsThatVanishAmongLargeCoordinatesAreRefusedOrWarnedOf) {
-    // Facets of a micrometre beside one 900 m away: along x they are nothing in float.
+    // Facets of a micrometre stand beside one 900 m away: along x they are nothing in float.
     auto far = cube();
     for (auto& facet : far) {
         for (glm::vec3& vertex : facet) {
@@ -159,7 +159,7 @@ TEST_F(Hostile, ForeignUnitsAreRefusedWhereNoDeviceHoldsThem) {
                 AllOf(HasSubstr("mm high"), HasSubstr("Correct the lengths")));
 }
 
-// Grey ramps of 300 x 200 pixels, as every format in use writes them.
+// The images are grey ramps of 300 x 200 pixels, in every format in use.
 class HostileImages : public Hostile, public testing::WithParamInterface<const char*> {
   protected:
     std::string image() const {
@@ -174,7 +174,7 @@ class HostileImages : public Hostile, public testing::WithParamInterface<const c
         }
         std::vector<unsigned char> pixels;
         for (unsigned int k = 0; k < 300 * 200; ++k) {
-            // Hard to pack, so that the data fill the file.
+            // The values are hard to pack, so that the data fill the file.
             const auto grey = static_cast<unsigned char>(k * k / 7 + k % 300);
             pixels.insert(pixels.end(), static_cast<std::size_t>(spec.nchannels), grey);
         }
@@ -207,7 +207,7 @@ TEST_F(Hostile, ImagesMadeToFillTheMemoryAreRefused) {
                 HasSubstr("map.pgm: largest value = 0: expected from 1 to 65535"));
     EXPECT_THAT(message_of([&] { (void)parse_image("P2 2 # columns\n 2 9\n1 2 3", "map.pgm"); }),
                 HasSubstr("2 x 2 pixels in 6 bytes: expected at least 8 bytes"));
-    // Packed zeros: more than 2^26 pixels in some kilobytes.
+    // The file packs zeros: more than 2^26 pixels in some kilobytes.
     const auto file = folder_ / "zeros.png";
     const auto output = OIIO::ImageOutput::create("png");
     ASSERT_TRUE(output->open(file.string(), OIIO::ImageSpec(16384, 4097, 1, OIIO::TypeDesc::UINT8)));

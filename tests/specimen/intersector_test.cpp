@@ -1,4 +1,4 @@
-// The host's intersector: against all triangles tried in turn, and at the places where a ray could slip
+// The host's intersector meets what all triangles tried in turn meet, also at the places where a ray could slip
 // through.
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"
@@ -58,7 +58,8 @@ struct Triangles {
         return result;
     }
 
-    // By the normal form of each plane and the signs of three areas; none of the code under test.
+    // The nearest distance by the normal form of each plane and the signs of three areas; none of the code under test
+    // is used.
     std::optional<double> nearest(glm::dvec3 origin, glm::dvec3 direction) const {
         std::optional<double> best;
         for (const auto& [a, b, c] : list) {
@@ -85,7 +86,7 @@ TEST(Intersector, FindsTheNearestOfAllTriangles) {
     int met = 0;
     int missed = 0;
     for (int i = 0; i < 4000; ++i) {
-        // From above and from the side, down and up, and every eighth straight down.
+        // Rays come from above and from the side, down and up, and every eighth straight down.
         const glm::dvec3 origin(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.001, 0.01));
         const glm::dvec3 direction = i % 8 == 0 ? glm::dvec3(0, 0, -1) : random.direction(0, 3.14159);
         const std::optional<double> expected = triangles.nearest(origin, direction);
@@ -109,7 +110,7 @@ TEST(Intersector, FindsTheNearestOfAllTriangles) {
     EXPECT_GT(met, 800);
 }
 
-// Rays aimed exactly at corners, edges and diagonals, from all sides above: each must be stopped.
+// Aims rays exactly at corners, edges and diagonals, from all sides above: each must be stopped.
 template <class Aim>
 int slipped_through(const Intersector& intersector, const HeightField& field, Aim aim) {
     RandomRays random(3);
@@ -130,13 +131,12 @@ int slipped_through(const Intersector& intersector, const HeightField& field, Ai
 }
 
 TEST(Intersector, LetsNothingThroughAtCornersAndEdges) {
-    // Heights and pitches of few bits, so that the rays do go through the corners exactly.
+    // Heights and pitches have few bits, so that the rays do go through the corners exactly.
     HeightField field = bumpy_field(20, 20);
     field.pitch_x = field.pitch_y = 0x1p-10;
     field.x_min = field.y_min = -10 * 0x1p-10;
     for (float& height : field.heights.values) {
-        // Slopes up to 0.3, below the cotangent of the steepest ray's angle, 0.39: every place is in plain
-        // view.
+        // Slopes are up to 0.3, below the cotangent of the steepest ray's angle, 0.39: every place is in plain view.
         height = std::round(height * 0.05f * 0x1p20f) * 0x1p-20f;
     }
     const Triangles triangles(field);
@@ -149,7 +149,7 @@ TEST(Intersector, LetsNothingThroughAtCornersAndEdges) {
                       }));
         }
     }
-    // Wrong twin: with a narrow slit at the same places rays do come through.
+    // In the wrong twin a narrow slit is at the same places, and rays do come through.
     Mesh slit = triangles.mesh();
     for (std::size_t i = 0; i < slit.vertices.size(); i += 3) {
         const glm::vec3 centre = (slit.vertices[i] + slit.vertices[i + 1] + slit.vertices[i + 2]) / 3.0f;

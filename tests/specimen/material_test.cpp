@@ -1,4 +1,4 @@
-// Materials as lobes by name, and the record that the trace takes.
+// Materials name lobes, of which the trace takes a record.
 #include "physics/scatter_registry.hpp"
 #include "specimen/description.hpp"
 
@@ -45,7 +45,8 @@ TEST(Material, BecomesTheRecordLobeByLobe) {
     EXPECT_EQ(record.lobe_0.model, physics::f64::SCATTER_MIRROR);
     EXPECT_EQ(record.lobe_1.model, physics::f64::SCATTER_HENYEY_GREENSTEIN);
     EXPECT_EQ(record.lobe_1.parameter_0, 0.7);
-    // Its table is filled: the norm at normal incidence by the Legendre series of scatter_test.cpp, the table to 1e-6.
+    // The lobe's table is filled: the norm at normal incidence is that of the Legendre series of scatter_test.cpp, the
+    // table is good to 1e-6.
     auto tabulated = record.lobe_1;
     EXPECT_NEAR(physics::f64::henyey_greenstein_norm(0.7, tabulated.table, 1.0), 0.735169, 1.5e-6);
     EXPECT_EQ(record.lobe_2.model, physics::f64::SCATTER_LAMBERTIAN);
@@ -53,7 +54,7 @@ TEST(Material, BecomesTheRecordLobeByLobe) {
     EXPECT_EQ(record.lobe_1.weight, 0.2);
     EXPECT_EQ(record.lobe_2.weight, 0.3);
     EXPECT_EQ(record.lobe_3.weight, 0);
-    // Nothing said: Lambertian, white.
+    // A material of which nothing is said is Lambertian and white.
     const auto standard = material_record({});
     EXPECT_EQ(standard.lobe_0.model, physics::f64::SCATTER_HENYEY_GREENSTEIN);
     EXPECT_EQ(standard.lobe_0.weight, 1);

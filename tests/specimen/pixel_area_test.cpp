@@ -1,4 +1,4 @@
-// The truth of pixels that look beside a regular grid: turned, distorted, or apart by jumps.
+// Pixels that look beside a regular grid, turned, distorted, or apart by jumps, have the truth of where they look.
 #include "specimen/description.hpp"
 #include "specimen/specimen.hpp"
 
@@ -60,7 +60,8 @@ PixelArea scattered(int column, int row) {
     return area;
 }
 
-// The same pixels one by one: no search for those that a triangle covers.
+// The heights of all pixels together are those of single pixels, for which no search finds the pixels that a triangle
+// covers.
 void expect_same_alone(const Specimen& specimen, const AreaOf& area_of) {
     const auto together = truth(specimen, grid, area_of);
     EXPECT_EQ(together.x0, grid.x0);
@@ -87,7 +88,7 @@ TEST(PixelArea, OfAMeshIsThatOfEachPixelAlone) {
     }
 }
 
-// z = 0.2 x - 0.1 y, of which each area has the mean in its middle.
+// Each area has the mean of z = 0.2 x - 0.1 y in its middle.
 TEST(PixelArea, OfAPlaneIsItsHeightInTheMiddle) {
     HeightField field{.heights = Grid<float>(3, 3), .x_min = -0.05, .y_min = -0.05, .pitch_x = 0.05, .pitch_y = 0.05};
     for (int row = 0; row < 3; ++row) {

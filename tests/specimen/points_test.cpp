@@ -1,5 +1,5 @@
-// Scattered points: their triangulation by its definition, the surface between them by the bound of its interpolation,
-// and files of points as programs write them, or damage them.
+// Scattered points are triangulated by Delaunay's definition, the surface between them keeps the bound of its
+// interpolation, and files of points are read as programs write them, or refused where they are damaged.
 #include "specimen/delaunay.hpp"
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"
@@ -27,7 +27,7 @@ struct Circle {
     double radius;
 };
 
-// Through a triangle's corners.
+// The circle through a triangle's corners.
 Circle circle_through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const glm::dvec2 ab = b - a, ac = c - a;
     const double twice = 2 * (ab.x * ac.y - ab.y * ac.x);
@@ -42,7 +42,7 @@ double area_of(const std::vector<glm::dvec2>& points, const glm::uvec3& t) {
     return 0.5 * (ab.x * ac.y - ab.y * ac.x);
 }
 
-// How deep the deepest point lies within any triangle's circle.
+// The greatest depth of any point within any triangle's circle.
 double depth_in_circles(const std::vector<glm::dvec2>& points, const std::vector<glm::uvec3>& triangles) {
     double deepest = 0;
     for (const glm::uvec3& t : triangles) {
@@ -77,8 +77,8 @@ double hull_area(std::vector<glm::dvec2> points) {
     return 0.5 * twice;
 }
 
-// Covers the hull once: all triangles go round the same way, no two on the same side of an edge, and their areas add
-// up.
+// Expects that the triangles cover the hull once: all go round the same way, no two are on the same side of an edge,
+// and their areas add up.
 void expect_cover(const std::vector<glm::dvec2>& points, const std::vector<glm::uvec3>& triangles, double expected) {
     double area = 0;
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
@@ -111,7 +111,7 @@ TEST(Delaunay, NoPointLiesInATrianglesCircle) {
         auto triangles = delaunay(points).triangles;
         expect_cover(points, triangles, hull_area(points));
         EXPECT_LT(depth_in_circles(points, triangles), rounding);
-        // Wrong twin: two neighbours that share the other diagonal of their quadrilateral.
+        // The wrong twin: two neighbours share the other diagonal of their quadrilateral.
         bool swapped = false;
         for (std::size_t i = 0; i < triangles.size() && !swapped; ++i) {
             for (std::size_t j = 0; j < triangles.size() && !swapped; ++j) {
@@ -132,7 +132,7 @@ TEST(Delaunay, NoPointLiesInATrianglesCircle) {
     }
 }
 
-// Four points of every cell on one circle, and all points of a border on one line but for rounding.
+// Four points of every cell lie on one circle, and all points of a border on one line but for rounding.
 TEST(Delaunay, LatticesAreCoveredOnceHoweverTheyAreTurned) {
     constexpr int side = 30;
     for (const double turn : {0.0, 0.3, pi / 4}) {
@@ -184,15 +184,16 @@ std::string refusal_of(const Points& points) {
     return "no error";
 }
 
-// Linear interpolation over a triangle is off by at most M R^2 / 2: M bounds the second derivative in any direction,
-// R is the radius of the smallest circle that holds the triangle (S. Waldron, SIAM J. Numer. Anal. 35 (1998) 1191);
-// h^2 M / 8 where it is obtuse, with the longest side h.
+// Linear interpolation over a triangle is off by at most M R^2 / 2: M bounds the second derivative in any direction, R
+// is the radius of the smallest circle that holds the triangle (S. Waldron, SIAM J. Numer. Anal. 35 (1998) 1191); where
+// it is obtuse, by h^2 M / 8 with the longest side h.
 TEST_F(ScatteredPoints, SurfaceIsThatOfThePointsWithinTheInterpolationsBound) {
     constexpr double amplitude = 2, period = 40; // um
     const auto height = [](const glm::dvec2& p) {
         return amplitude * std::cos(2 * pi * p.x / period) * std::cos(2 * pi * p.y / period);
     };
-    // With a = 2 pi x / period and b, along (u, v): at most |cos a cos b| + 2 |u v sin a sin b| <= 1 times this.
+    // With a = 2 pi x / period, and b alike, the second derivative along (u, v) is at most |cos a cos b| + 2 |u v sin a
+    // sin b| <= 1 times this.
     const double curvature = amplitude * std::pow(2 * pi / period, 2);
     auto places = random_points(1500, 7); // of +-50 um
     std::string text = "x y z\n";
@@ -263,7 +264,7 @@ TEST_F(ScatteredPoints, HeightsMayHaveAUnitOfTheirOwn) {
     EXPECT_EQ(mesh_of(points).vertices, (std::vector<glm::vec3>{{0, 0, 1e-3f}, {10, 0, 2e-3f}, {0, 10, 3e-3f}}));
 }
 
-// A square frame of points around nothing.
+// The points are a square frame around nothing.
 TEST_F(ScatteredPoints, TrianglesWithLongEdgesAreLeftOut) {
     std::string text;
     for (int i = -10; i <= 10; ++i) {

@@ -1,4 +1,5 @@
-// Maps of reflectance as they are made: noise by its statistics, images by their pixels, and what is refused.
+// Maps of reflectance are made as asked for: noise by its statistics, images by their pixels; impossible ones are
+// refused.
 #include "images/image_file.hpp"
 #include "specimen/description.hpp"
 #include "specimen/geometry_digest.hpp"
@@ -42,7 +43,7 @@ Statistics statistics_of(const Grid<float>& grid) {
     return {sum / count, std::sqrt(squares / count - sum / count * sum / count)};
 }
 
-// Autocorrelation at a distance of so many points along x and along y, 1 at 0.
+// The autocorrelation at a distance of so many points along x and along y, 1 at 0.
 double correlation(const Grid<float>& grid, int apart_x, int apart_y) {
     const auto [mean, deviation] = statistics_of(grid);
     double sum = 0;
@@ -68,7 +69,7 @@ std::string problem_of(const Reflectance& reflectance, const Rectangle& footprin
 
 } // namespace
 
-// 501 x 501 points, of which about 16,000 are independent: correlations are known to about 0.008.
+// About 16,000 of 501 x 501 points are independent: correlations are known to about 0.008.
 TEST(ReflectanceNoise, HasTheCorrelationThatWasAskedFor) {
     const auto map = make_reflectance_map(noise(), square_mm, {});
     ASSERT_EQ(map.values.columns, 501);
@@ -100,7 +101,7 @@ TEST(ReflectanceNoise, CoversTheFootprintAndIsClipped) {
     EXPECT_DOUBLE_EQ(map.record.centre_y, -0.05);
     EXPECT_EQ(*std::ranges::min_element(map.values.values), 0);
     EXPECT_EQ(*std::ranges::max_element(map.values.values), 1);
-    // Of a normal density clipped at one deviation on both sides the share erfc(1 / sqrt 2) lies on the bounds.
+    // The share erfc(1 / sqrt 2) of a normal density that is clipped at one deviation on both sides lies on the bounds.
     const auto on_bounds =
         std::ranges::count_if(map.values.values, [](float value) { return value <= 0 || value >= 1; });
     EXPECT_NEAR(static_cast<double>(on_bounds) / (106 * 251), std::erfc(std::sqrt(0.5)), 0.03);

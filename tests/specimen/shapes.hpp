@@ -9,7 +9,7 @@
 
 namespace vkfv::test {
 
-// A kind over a square.
+// A specimen of a kind over a square.
 template <class Kind>
 Kind over(double size, double pitch) {
     Kind kind;
@@ -18,7 +18,7 @@ Kind over(double size, double pitch) {
     return kind;
 }
 
-// The same as facets, or as a function.
+// The shape, represented as facets or as a function where it has a choice.
 inline specimen::Shape represented(specimen::Shape shape, specimen::Representation representation) {
     std::visit(
         [&](auto& kind) {

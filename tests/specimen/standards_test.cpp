@@ -51,7 +51,7 @@ TEST(Plateaus, LettersHaveTheirHeightsFromLeftToRight) {
     ASSERT_EQ(columns.size(), 4u);
     EXPECT_LT(columns.at(0.002f).second, columns.at(0.004f).first);
     EXPECT_LT(columns.at(0.004f).second, columns.at(0.006f).first);
-    // As wide as asked for, in the middle: widths are whole points, four letters and three gaps.
+    // The text is as wide as asked for, and in the middle: widths are whole points, four letters and three gaps.
     EXPECT_NEAR(columns.at(0.006f).second - columns.at(0.002f).first, 320, 12);
     EXPECT_NEAR(columns.at(0.006f).second + columns.at(0.002f).first, 400, 12);
 }
@@ -77,7 +77,8 @@ TEST(Plateaus, MaskOfAnImageWithAHeightAGreyValue) {
     d.heights = {0.005};
     const Specimen made = make({.shape = d});
     const HeightField& field = field_of(made);
-    // The F of tests/references/make_specimens.py: its stem, the plate right of it, its upper bar.
+    // The values are those of the F of tests/references/make_specimens.py: its stem, the plate right of it, its upper
+    // bar.
     EXPECT_FLOAT_EQ(static_cast<float>(at(field, -0.03, -0.03)), 0.005f);
     EXPECT_EQ(at(field, 0.03, -0.03), 0);
     EXPECT_FLOAT_EQ(static_cast<float>(at(field, 0.03, 0.05)), 0.005f);
@@ -106,7 +107,7 @@ Air air() {
     return d;
 }
 
-// Power over rings of frequency (cycles a tile) of one sub-surface.
+// The power over rings of frequency (cycles a tile) of one sub-surface.
 std::vector<double> rings(const HeightField& field, int tile_column, int points) {
     Grid<std::complex<double>> tile(points, points);
     for (int row = 0; row < points; ++row)
@@ -131,8 +132,9 @@ TEST(SubSurfaces, HaveThePowerSpectrumThatIsStated) {
     const HeightField& field = field_of(made);
     ASSERT_EQ(field.heights.columns, 401);
     const std::vector<double> power = rings(field, 0, 200);
-    // Tiles of 0.2 mm: the roll-off is at 4 cycles, the end at 20. Rings hold 2 pi k modes, half of them independent,
-    // each exponential: the standard error of a mean over rings a..b is 1 / sqrt(pi (b^2 - a^2) / 2). Ten of them.
+    // In tiles of 0.2 mm the roll-off is at 4 cycles, the end at 20. Rings hold 2 pi k modes, half of them independent,
+    // each exponential: the standard error of a mean over rings a..b is 1 / sqrt(pi (b^2 - a^2) / 2). Ten of these are
+    // allowed.
     const auto mean = [&](int a, int b) {
         double sum = 0, count = 0;
         for (int k = a; k <= b; ++k) {

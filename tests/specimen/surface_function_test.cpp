@@ -1,4 +1,4 @@
-// The analytic height function and the march, against closed forms and a plain search.
+// The analytic height function and the march agree with closed forms and a plain search.
 #include "specimen/analytic.hpp"
 #include "specimen/intersector.hpp"
 #include "specimen/kinds.hpp"
@@ -102,7 +102,7 @@ std::vector<Expected> shapes() {
     chirp.period = 0.04;
     chirp.period_stop = 0.01;
     list.push_back({"chirp", chirp, [](double x, double) {
-                        // Phase: the integral of a frequency that goes from 25 to 100 per mm over 0.2 mm.
+                        // The phase is the integral of a frequency that goes from 25 to 100 per mm over 0.2 mm.
                         const double s = x + 0.1;
                         return 0.001 * std::sin(2 * pi * (25 * s + 0.5 * 375 * s * s));
                     }});
@@ -120,13 +120,13 @@ TEST(SurfaceFunction, HeightsOfEveryShapeAreTheClosedForms) {
             const double y = random.uniform(-0.1, 0.1);
             const double expected = one.height(x, y);
             const auto found = physics::f64::shape_height(r, x, y);
-            // Heights up to 0.04 mm of terms up to 0.1 mm: some roundings of 2^-53 of 0.1, and a sine of up
-            // to 12 turns.
+            // Heights up to 0.04 mm come of terms up to 0.1 mm: some roundings of 2^-53 of 0.1, and a sine of up to 12
+            // turns.
             EXPECT_NEAR(found.height, expected, 1e-16) << one.name << " at " << x << ", " << y;
             EXPECT_LE(std::hypot(found.slope_x, found.slope_y), r.lipschitz);
             EXPECT_GE(found.height, r.bottom);
             EXPECT_LE(found.height, r.top);
-            // Float: x is wrong by 2^-24 of 0.1, which the slope passes on, and the sum by some more.
+            // In float x is wrong by 2^-24 of 0.1, which the slope passes on, and the sum by some more.
             const double tolerance = 6e-8 * (0.1 + 4 * 0.2 * r.lipschitz);
             const auto in_float = physics::f32::shape_height(f, static_cast<float>(x), static_cast<float>(y));
             EXPECT_NEAR(static_cast<double>(in_float.height), expected, tolerance) << one.name;
@@ -155,7 +155,7 @@ TEST(SurfaceFunction, SlopesAreTheDerivatives) {
                 return physics::f64::surface_height(scene, r, x + dx, y + dy).height;
             };
             const auto found = physics::f64::surface_height(scene, r, x, y);
-            // Central differences: h^2/6 of the third derivative (below 1e6 mm^-2 here) and 1e-17 / h of
+            // Central differences err by h^2/6 of the third derivative (below 1e6 mm^-2 here) and 1e-17 / h of
             // rounding. A kink (flank, rim) within h of the point is hit by no more than one in 10000.
             const bool close = std::abs((at(h, 0) - at(-h, 0)) / (2 * h) - found.slope_x) < 1e-7 &&
                                std::abs((at(0, h) - at(0, -h)) / (2 * h) - found.slope_y) < 1e-7;
@@ -178,8 +178,8 @@ TEST(SurfaceFunction, ChirpHasTheNumberOfPeriodsOfALinearSweep) {
         crossings += (now < 0) != (before < 0) ? 1 : 0;
         before = now;
     }
-    // The mean of 25 and 100 periods per mm over 0.2 mm: 12.5 periods, whose zeros inside are 24. A sweep
-    // linear in the period would have 0.2 / 0.03 ln 4 = 9.24.
+    // The mean of 25 and 100 periods per mm over 0.2 mm makes 12.5 periods, whose zeros inside are 24. A sweep linear
+    // in the period would have 0.2 / 0.03 ln 4 = 9.24.
     EXPECT_EQ(crossings, 24);
 }
 
@@ -212,11 +212,11 @@ TEST(SurfaceFunction, LatticeIsInterpolatedWithContinuousSlopeWithinItsBounds) {
         const auto in_float =
             physics::f32::surface_height(float_scene, f, static_cast<float>(x), static_cast<float>(y));
         EXPECT_NEAR(static_cast<double>(in_float.height), found.height, 6e-8 * 0.2 * r.lipschitz);
-        // Either side of a line of the lattice.
+        // The two points lie on either side of a line of the lattice.
         const double line = lattice.x_min + (1 + i % (lattice.heights.columns - 2)) * lattice.pitch_x;
         const auto left = physics::f64::surface_height(scene, r, line - 1e-12, y);
         const auto right = physics::f64::surface_height(scene, r, line + 1e-12, y);
-        // 2e-12 mm times a second derivative below 1e4 / mm.
+        // The tolerance is for 2e-12 mm times a second derivative below 1e4 / mm.
         EXPECT_NEAR(left.slope_x, right.slope_x, 1e-7);
         EXPECT_NEAR(left.slope_y, right.slope_y, 1e-7);
     }
@@ -234,7 +234,7 @@ TEST(March, MeetsASphereWhereTheClosedFormDoes) {
     RandomRays random(4);
     int on_cap = 0;
     for (int i = 0; i < 5000; ++i) {
-        // Towards a point of the cap's neighbourhood, from above, up to 80 degrees off the normal.
+        // The ray goes towards a point of the cap's neighbourhood, from above, up to 80 degrees off the normal.
         const glm::dvec3 target(random.uniform(-0.08, 0.08), random.uniform(-0.08, 0.08), 0);
         const glm::dvec3 direction = -random.direction(0, 1.4);
         const glm::dvec3 origin = target - direction * ((r.top - target.z) / -direction.z);
@@ -261,7 +261,7 @@ TEST(March, MeetsASphereWhereTheClosedFormDoes) {
             continue; // the closed form itself loses its digits
         }
         on_cap += cap ? 1 : 0;
-        // A residual of some 1e-16 mm in height over the least rate of approach, here above 1e-3
+        // The tolerance is a residual of some 1e-16 mm in height over the least rate of approach, here above 1e-3
         // (discriminant and angle).
         EXPECT_NEAR(hit.distance, distance, 1e-12);
         const glm::dvec3 point = origin + distance * direction;
@@ -271,7 +271,7 @@ TEST(March, MeetsASphereWhereTheClosedFormDoes) {
         const auto in_float = physics::f32::march_surface(no_lattice, f, glm::vec3(origin), glm::vec3(direction), 0.0f,
                                                           std::numeric_limits<float>::max());
         ASSERT_EQ(in_float.found, 1u);
-        // On the surface to its own rounding: 4 ulp of the coordinates times slope.
+        // In float the hit is on the surface to its own rounding: 4 ulp of the coordinates times slope.
         const double x = static_cast<double>(in_float.position.x);
         const double y = static_cast<double>(in_float.position.y);
         EXPECT_NEAR(static_cast<double>(in_float.position.z), physics::f64::shape_height(r, x, y).height,
@@ -302,7 +302,7 @@ TEST(March, FindsTheFirstCrossingOfARoughSurface) {
             const glm::dvec3 p = origin + t * direction;
             return std::abs(p.x) > 0.025 || std::abs(p.y) > 0.025;
         };
-        // A plain search in steps of 0.02 um and bisection.
+        // The truth is a plain search in steps of 0.02 um and bisection.
         double t = 0;
         while (!outside(t) && gap(t) > 0) {
             t += 2e-5;
@@ -320,8 +320,8 @@ TEST(March, FindsTheFirstCrossingOfARoughSurface) {
         if (expected) {
             ++met;
             ASSERT_EQ(hit.found, 1u) << i;
-            // The march may find a graze that the search steps over, never a later crossing. A residual of
-            // 1e-15 mm over a rate of approach that is below 1e-3 for one ray in hundreds.
+            // The march may find a graze that the search steps over, never a later crossing. The tolerance is a
+            // residual of 1e-15 mm over a rate of approach that is below 1e-3 for one ray in hundreds.
             EXPECT_LE(hit.distance, upper + 1e-11) << i;
             EXPECT_NEAR(gap(hit.distance), 0, 2e-15) << i;
             EXPECT_GT(hit.distance, upper - 2e-3) << i;
@@ -339,7 +339,7 @@ TEST(March, FindsTheFirstCrossingOfARoughSurface) {
     EXPECT_LE(floats_beside, 1); // at the footprint's border
 }
 
-// What leaves a convex surface never meets it again, whatever the direction: neither stuck nor leaked.
+// Light that leaves a convex surface never meets it again, whatever the direction: rays are neither stuck nor leaked.
 template <class Real, class Record, class March>
 int meetings_after_leaving(const Record& r, March march, double offset) {
     RandomRays random(6);
@@ -361,7 +361,7 @@ int meetings_after_leaving(const Record& r, March march, double offset) {
         }
         const glm::dvec3 origin = glm::dvec3(x, y, z) + offset * 0.1 * normal;
         const auto hit = march(r, glm::vec<3, Real>(origin), glm::vec<3, Real>(direction));
-        // A shallow descent may end on the plane: then far away.
+        // A shallow descent may end on the plane, but then far away.
         met += hit.found == 1u && direction.z >= 0 ? 1 : 0;
         if (hit.found == 1u && direction.z < 0) {
             met += hit.distance < Real(1e-3) ? 1 : 0;
@@ -373,7 +373,7 @@ int meetings_after_leaving(const Record& r, March march, double offset) {
 TEST(March, LetsGoOfAConvexSurface) {
     const auto r = record(make({.shape = sphere_cap()}), 1);
     const auto f = to_float(r);
-    // The offset of scatter_origin in path.glsl: 2^-20 of the largest coordinate.
+    // The offset is that of scatter_origin in path.glsl: 2^-20 of the largest coordinate.
     EXPECT_EQ(0, meetings_after_leaving<float>(
                      f,
                      [](const auto& record, glm::vec3 origin, glm::vec3 direction) {
@@ -387,7 +387,7 @@ TEST(March, LetsGoOfAConvexSurface) {
                          return physics::f64::march_surface(LatticeScene{}, record, origin, direction, 0.0, infinity);
                      },
                      0x1p-20));
-    // Wrong twin: a start below the surface by 10 nm is met, every time.
+    // The wrong twin: a start below the surface by 10 nm is met, every time.
     EXPECT_LT(10000, meetings_after_leaving<double>(
                          r,
                          [](const auto& record, glm::dvec3 origin, glm::dvec3 direction) {
@@ -409,8 +409,8 @@ TEST(March, StartBelowIsMetAtOnceAndEntryBelowFromBelow) {
     EXPECT_EQ(below.found, 1u);
     EXPECT_EQ(below.distance, 0.0);
     EXPECT_NEAR(below.position.z, 0.002, 1e-15);
-    // From the side at half height: x = -0.1 is a zero crossing (4 half periods), rising; the ray at -0.001
-    // is below until the surface falls to it: sin = -1/2 first at x = -0.075 + 0.05 / 12.
+    // The ray comes from the side at half height: x = -0.1 is a zero crossing (4 half periods), rising; the ray at
+    // -0.001 is below until the surface falls to it: sin = -1/2 first at x = -0.075 + 0.05 / 12.
     const auto side = march({-0.2, 0, -0.001}, {1, 0, 0});
     EXPECT_EQ(side.found, 1u);
     EXPECT_NEAR(side.position.x, -0.075 + 0.05 / 12, 1e-12);

@@ -1,4 +1,4 @@
-// A surface file as specimen: where its points come to stand, levelled, cropped and filled.
+// A surface file as specimen has its points where they come to stand, levelled, cropped and filled.
 #include "images/image_file.hpp"
 #include "specimen/description.hpp"
 #include "specimen/refined.hpp"
@@ -69,7 +69,8 @@ TEST_F(SurfaceSpecimen, IsLevelledByLeastSquares) {
             moment_x += z * (column - 10);
             moment_y += z * (row - 5);
         }
-    // 231 float32 heights below 0.01 mm, each off by at most 2^-25 of it, with arms of up to 10 points.
+    // The rounding is that of 231 float32 heights below 0.01 mm, each off by at most 2^-25 of it, with arms of up to 10
+    // points.
     const double rounding = 231 * std::ldexp(0.01, -25);
     EXPECT_NEAR(sum, 0, rounding);
     EXPECT_NEAR(moment_x, 0, 10 * rounding);
@@ -104,7 +105,7 @@ TEST_F(SurfaceSpecimen, GapsAreTracedButNotTrue) {
     const surface::HeightMap true_heights = truth({filled, {}}, 40, 20, -0.0195, -0.0095, 0.001, 0.001);
     for (int row = 0; row < 20; ++row)
         for (int column = 0; column < 40; ++column) {
-            // Six facets around (12, 6), which stands at (0.004, 0.003): in whole pitches from there the hexagon with
+            // Six facets surround (12, 6), which stands at (0.004, 0.003): in whole pitches from there the hexagon with
             // -1 < u, v, u - v < 1. Pixels clearly outside are known, those clearly inside are not.
             const double u = (true_heights.x(column) - 0.004) / 0.002, v = (true_heights.y(row) - 0.003) / 0.003;
             const double distance = std::max({std::abs(u), std::abs(v), std::abs(u - v)});

@@ -1,4 +1,4 @@
-// Tables of bsdfs: what is read, refused and told, and their draws against their density.
+// Tables of bsdfs are read, refused or warned of as documented, and draw their density.
 #include "specimen/tabulated_bsdf.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -24,7 +24,7 @@ using physics::f64::real3;
 using testing::AllOf;
 using testing::HasSubstr;
 
-// Degrees.
+// A bsdf by its angles in degrees.
 using Bsdf = std::function<double(double incidence, double scatter, double azimuth)>;
 
 double cosine(double degrees) {
@@ -34,7 +34,7 @@ double sine(double degrees) {
     return std::sin(degrees * radians_per_degree);
 }
 
-// Reciprocal, brighter about the mirror direction.
+// A reciprocal bsdf that is brighter about the mirror direction.
 double glossy(double incidence, double scatter, double azimuth) {
     const double apart = std::pow(sine(incidence), 2) + std::pow(sine(scatter), 2) -
                          2 * sine(incidence) * sine(scatter) * cosine(azimuth);
@@ -78,7 +78,7 @@ class TabulatedBsdfFile : public test::TemporaryFiles {
 };
 
 TEST_F(TabulatedBsdfFile, KeepsTheIntegralOfItsValues) {
-    // Without an azimuth, rough as Lambert's law of reflectance 0.4, and one incidence.
+    // The table has no azimuth, is rough as Lambert's law of reflectance 0.4, and has one incidence.
     std::string text = "incidence_deg,scatter_deg,bsdf_per_sr\n";
     for (const double s : {0.0, 30.0, 60.0, 85.0}) {
         text += fmt::format("20,{},{}\n", s, 0.4 / pi);
@@ -98,8 +98,8 @@ TEST_F(TabulatedBsdfFile, IsToldHowFarFromReciprocalItIs) {
     EXPECT_LT(
         *read(csv([](double i, double s, double) { return 0.1 * (cosine(i) + cosine(s)); })).reciprocity_deviation(),
         1e-6);
-    // f(i, o) = 0.3 cos(i): the sum of |cos(i) - cos(o)| over that of cos(i), each of 0, 15, ... 75 degrees for the
-    // projected solid angle up to halfway to the next.
+    // For f(i, o) = 0.3 cos(i) the deviation is the sum of |cos(i) - cos(o)| over that of cos(i), each of 0, 15, ... 75
+    // degrees for the projected solid angle up to halfway to the next.
     const auto one_sided = [](double i, double, double) { return 0.3 * cosine(i); };
     const double deviation = *read(csv(one_sided), 1e9).reciprocity_deviation();
     double apart = 0, mean = 0;
@@ -133,7 +133,8 @@ TEST_F(TabulatedBsdfFile, RefusesWhatIsNoBsdf) {
     EXPECT_THAT(problem("incidence_deg,scatter_deg\n0,0\n"), HasSubstr("bsdf_per_sr"));
 }
 
-// Chi-square over cells of the directions, and what is not scattered; in float each draw is that in double.
+// Chi-square over cells of the directions, and of what is not scattered, finds the density drawn; in float each draw is
+// that in double.
 TEST_F(TabulatedBsdfFile, DrawsItsDensity) {
     Material material{{{"tabulated", 1, {}}}};
     material.lobes[0].bsdf = read(csv(glossy));
@@ -196,7 +197,7 @@ TEST_F(TabulatedBsdfFile, DrawsItsDensity) {
     }
 }
 
-// The table's own values and their linear mean, by the model.
+// The model gives the table's own values and their linear mean.
 TEST_F(TabulatedBsdfFile, IsItsTableAtItsAngles) {
     Material material{{{"tabulated", 1, {}}}};
     material.lobes[0].bsdf = read(csv(glossy));

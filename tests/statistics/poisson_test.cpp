@@ -1,4 +1,4 @@
-// Electrons and normal deviates against their distributions, computed otherwise: probabilities by std::lgamma, and
+// Electrons and normal deviates follow their distributions, computed otherwise: probabilities by std::lgamma, and
 // Pearson's chi-square over 10^6 draws at each mean.
 #include "statistics/poisson.hpp"
 
@@ -32,7 +32,7 @@ double chi_square_excess(const std::vector<double>& observed, const std::vector<
     return (chi - (cells - 1)) / std::sqrt(2 * (cells - 1));
 }
 
-// Of draws of `mean`, held against the distribution of `claimed`.
+// The excess of chi-square, in standard deviations, of draws of `mean` held against the distribution of `claimed`.
 double excess_of(double mean, double claimed) {
     const double reach = 7 * std::sqrt(mean) + 12;
     const auto first = static_cast<long>(std::max(0.0, std::floor(mean - reach)));
@@ -55,7 +55,7 @@ TEST(Poisson, CountsHaveTheirDistribution) {
     }
 }
 
-// The same draws as if of a mean that is off by a hundredth of a standard deviation.
+// The wrong twin: a mean that is off by a hundredth of a standard deviation is found.
 TEST(Poisson, ChiSquareFindsAMeanThatIsOff) {
     EXPECT_GT(excess_of(300, 300 + 0.01 * std::sqrt(300.0)), 4);
 }
@@ -87,7 +87,7 @@ TEST(RandomStream, NormalDeviatesHaveTheirDistribution) {
     EXPECT_LT(std::abs(chi_square_excess(observed, expected)), 4);
 }
 
-// Neither seed, image, pixel, frame nor purpose may be without effect.
+// Each of seed, image, pixel, frame and purpose has an effect.
 TEST(RandomStream, EveryIndexMakesOtherNumbers) {
     const auto first = RandomStream(1, 2, 3, 4, Purpose::temporal_noise).uniforms();
     EXPECT_EQ(RandomStream(1, 2, 3, 4, Purpose::temporal_noise).uniforms(), first);

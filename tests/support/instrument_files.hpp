@@ -1,5 +1,5 @@
-// Small files as instruments write them: 3 x 2 points, 1 2 3 um over 4 - 6 um, "-" not measured (5 um in NMS); pitch
-// 1 um.
+// Small files as instruments write them: 3 x 2 points, 1 2 3 um over 4 - 6 um, "-" not measured (5 um in NMS), with a
+// pitch of 1 um.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +52,7 @@ inline std::string opd_file() {
     };
     add("Directory", 1, {});
     add("Mult", 6, raw_points<std::int16_t>({100}));
-    // By columns, each from the lowest y; waves of 500 nm.
+    // Heights are stored by columns, each from the lowest y, in waves of 500 nm.
     add("RAW_DATA", 3,
         raw_points<std::uint16_t>({3, 2, 2}) + raw_points<std::int16_t>({800, 200, 32767, 400, 1200, 600}));
     add("Pixel_size", 7, raw_points<float>({1e-3}));
@@ -78,7 +78,7 @@ inline std::string metropro_file() {
     big(168, 4.096e-7f);
     big(176, 1.0f);
     big(184, 1e-6f);
-    // Steps of 0.05 nm.
+    // Heights are stored in steps of 0.05 nm.
     for (const int step : {20000, 40000, 60000, 80000, 2147483640, 120000}) {
         bytes.resize(bytes.size() + 4);
         put(bytes, bytes.size() - 4, std::int32_t{step}, true);
@@ -86,13 +86,13 @@ inline std::string metropro_file() {
     return bytes;
 }
 
-// MetroPro's header as text, up to its "#". Two rows of three phases, whose origin is (10, 20).
+// MetroPro's header as text, up to its "#", for two rows of three phases, whose origin is (10, 20).
 inline std::string zygo_header(const std::string& title, const std::string& pitch = "1e-06") {
     return title +
            "\n0 9 1 0 \"Sat Jul 23 2011\"\n0 0 0 0 0 0\n10 20 3 2\n\"a part\"\n\"17\"\n\"\"\n0 0.5 4.096e-07 0 1 0 " +
            pitch + " 1311439776\n3 2 0 0 0 0 \"\"\n0 0 0 0 0 0 0 0 0 0\n0 1 20 2 0 0 0 0 0\n0 \"\"\n1 0\n\"\"\n#\n";
 }
-// Steps of 0.05 nm, in lines that do not end with the rows.
+// A file of phases in steps of 0.05 nm, in lines that do not end with the rows.
 inline std::string zygo_phases() {
     return zygo_header("Zygo ASCII Data File - Format 2") + "#\n20000 40000 60000 80000 \n2147483640 120000\n#\n";
 }
@@ -117,7 +117,7 @@ inline std::string nms_file() {
     return bytes + raw_points<std::uint16_t>({10000, 20000, 30000, 40000, 50000, 60000});
 }
 
-// By the ending of the format's names.
+// The file of a format, by the ending of its names.
 inline std::string instrument_file(const std::string& ending) {
     return ending == "plu" ? plu_file() : ending == "opd" ? opd_file() : ending == "dat" ? metropro_file() : nms_file();
 }

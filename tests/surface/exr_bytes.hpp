@@ -13,7 +13,7 @@ namespace vkfv::test {
 struct ExrBytes {
     int columns = 3, rows = 2;
     std::vector<float> values = {1, 2, 3, 4, 5, 6}; // first row on top
-    // What the header says; the pixels stay those of columns x rows.
+    // The header's statements; the pixels stay those of columns x rows.
     std::vector<std::int32_t> window = {0, 0, 2, 1}; // least and greatest x and y
     std::uint32_t tile = 0;                          // columns and rows of a tile; 0: scan lines
     int parts = 1;                                   // further ones hold zeros
@@ -51,7 +51,7 @@ inline std::string ExrBytes::header(int part) const {
     std::string box;
     for (const std::int32_t side : window)
         box += int32(side);
-    // Type 2 is float32; linearity and three reserved bytes; sampling in x and y.
+    // A channel is of type 2, float32; then follow linearity and three reserved bytes, and sampling in x and y.
     const std::string described = channel + '\0' + int32(2) + int32(0) + int32(1) + int32(1);
     attribute("channels", "chlist", described + '\0');
     attribute("compression", "compression", std::string(1, '\0'));

@@ -16,7 +16,8 @@ constexpr double amplitude = 0.001, pitch = 0.0005;
 constexpr int points_a_period = 20, periods = 5;
 constexpr double period = points_a_period * pitch;
 
-// Peaks and pits on points of the grid, whole periods; pits at the borders, so that no peak is cut in halves.
+// Peaks and pits lie on points of the grid, with whole periods and pits at the borders, so that no peak is cut in
+// halves.
 HeightMap egg_box(double offset = 0) {
     HeightMap map{.height = Grid<double>(points_a_period * periods, points_a_period * periods),
                   .x0 = 0,
@@ -36,13 +37,14 @@ TEST(FeatureParameters, OfAnEggBoxHaveTheirClosedForms) {
     EXPECT_NEAR(p.s5v, 2 * amplitude, 1e-12);
     EXPECT_NEAR(p.s10z, 4 * amplitude, 1e-12);
     EXPECT_NEAR(p.spd, 1 / (period * period), 1e-9 / (period * period)); // a peak a period
-    // Central differences of a cosine, along x and along y; by 2 pi / period squared for ever finer points.
+    // The curvature is by central differences of a cosine, along x and along y; for ever finer points it is 2 pi /
+    // period squared.
     const double curvature = amplitude * 2 * (1 - std::cos(2 * pi / points_a_period)) / (pitch * pitch);
     EXPECT_NEAR(p.spc, curvature, 1e-8 * curvature);
     EXPECT_NEAR(p.spc, amplitude * std::pow(2 * pi / period, 2), 0.01 * curvature);
 }
 
-// A lesser peak that rises by a share of Sz over the saddle to the higher one.
+// The map has a lesser peak that rises by a share of Sz over the saddle to the higher one.
 TEST(FeatureParameters, APeakCountsFromFivePercentOfSzOn) {
     for (const double rise : {0.04, 0.06}) {
         HeightMap map = sampled(40, 9, 1, [](double, double) { return 0.0; });

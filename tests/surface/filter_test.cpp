@@ -47,8 +47,8 @@ TEST(Plane, ResidualIsOrthogonalToOffsetAndTilt) {
                 along_x += z * column;
                 along_y += z * row;
             }
-    // The mean of some n = 520 heights of 0.1 mm, summed one by one, is wrong by at most n roundings
-    // of 1.1e-17 mm, at each of n points alike; weighted by up to 31.
+    // The mean of some n = 520 heights of 0.1 mm, summed one by one, is wrong by at most n roundings of 1.1e-17 mm, at
+    // each of n points alike, and is weighted by up to 31.
     const double rounding = 520 * 520 * 1.1e-17;
     EXPECT_NEAR(sum, 0, rounding);
     EXPECT_NEAR(along_x, 0, 31 * rounding);
@@ -88,7 +88,8 @@ TEST(Plane, LevelsProfilesAlongThem) {
     EXPECT_NEAR(strip.slope_y, -0.05, 1e-7); // heights of 400 mm, rounded to 6e-14 mm, 0.002 mm apart
 }
 
-// Amplitude of a cosine of wavelength `wavelength` at the middle of the map, after the low-pass of index L.
+// The amplitude of a cosine of wavelength `wavelength` at the middle of the map, after the low-pass of this nesting
+// index.
 double transmission(double wavelength, double nesting_index, bool along_x) {
     const double pitch = 0.002;
     const auto map = sampled(161, 161, pitch, [=](double x, double y) {
@@ -99,8 +100,8 @@ double transmission(double wavelength, double nesting_index, bool along_x) {
 }
 
 TEST(GaussianFilter, HalfOfTheAmplitudePassesAtTheNestingIndex) {
-    // ISO 16610-61: exp(-pi (alpha L / wavelength)^2). Cut off at L = 0.08 mm the weights miss less than
-    // 1e-5; the sum over points 2 um apart equals the integral to far below that (Poisson).
+    // ISO 16610-61 gives exp(-pi (alpha L / wavelength)^2). Cut off at L = 0.08 mm the weights miss less than 1e-5; the
+    // sum over points 2 um apart equals the integral to far below that (Poisson).
     const double alpha = std::sqrt(std::log(2.0) / pi);
     for (const bool along_x : {true, false}) {
         EXPECT_NEAR(transmission(0.08, 0.08, along_x), 0.5, 1e-5);
@@ -133,7 +134,8 @@ TEST(GaussianFilter, NeedsAPositiveNestingIndex) {
 }
 
 TEST(GaussianFilter, ByTransformsIsThatOfWeightedSums) {
-    // Of heights in three magnitudes, with isolated points, odd sizes, and windows shorter and longer than the map.
+    // Heights of three magnitudes, isolated points, odd sizes, and windows shorter and longer than the map give the
+    // same by both.
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
     for (const auto& [columns, rows] : {std::pair(157, 83), std::pair(1, 90), std::pair(64, 1)}) {

@@ -37,13 +37,13 @@ TEST(Form, IsKnownByItsName) {
 
 TEST(Form, OfASphereLeavesTheWavesOnIt) {
     const double radius = 1, amplitude = 1e-5;
-    // Ten whole periods of ten points, even about the middle of the map.
+    // The wave has ten whole periods of ten points, even about the middle of the map.
     auto map = sampled(100, 100, 0.002, [=](double x, double y) {
         const double u = x + 0.3 - 0.099, v = y - 0.2 - 0.099;
         return -(u * u + v * v) / (radius + std::sqrt(radius * radius - u * u - v * v)) +
                amplitude * std::cos(2 * pi * u / 0.02);
     });
-    // Of k = 10 periods a parabola takes the share 90 / (pi k)^4 = 9.2e-5 of the mean square, a sphere less; the slopes
+    // A parabola takes the share 90 / (pi k)^4 = 9.2e-5 of the mean square of k = 10 periods, a sphere less; the slopes
     // of up to 0.14 weigh the points by up to 2 % less, which changes that share as much.
     const double waves = amplitude / std::sqrt(2);
     EXPECT_NEAR(sq_after("sphere", map), waves, 1e-4 * waves);
@@ -88,7 +88,7 @@ TEST(Form, LeavesNoRounding) {
                 EXPECT_TRUE(std::isnan(spatial_parameters(rest).sal)) << form;
                 EXPECT_TRUE(std::isnan(spatial_parameters(rest).std_angle)) << form;
                 EXPECT_EQ(p.measured_share, height_parameters(map).measured_share);
-                // A nanometre's thousandth is no rounding.
+                // A thousandth of a nanometre is no rounding.
                 HeightMap marked = map;
                 for (std::size_t k = 0; k < marked.height.values.size(); k += 2)
                     marked.height.values[k] += 1e-9;

@@ -15,7 +15,7 @@ using namespace test;
 
 TEST(HeightParameters, OfASinusoidAreItsClosedForms) {
     const double amplitude = 0.003;
-    // Four whole periods of 25 points: sums over whole periods are exact for sin, sin^2, sin^3 and sin^4.
+    // With four whole periods of 25 points, sums over whole periods are exact for sin, sin^2, sin^3 and sin^4.
     const auto map =
         sampled(100, 7, 0.002, [=](double x, double) { return 0.5 + amplitude * std::sin(2 * pi * (x + 0.3) / 0.05); });
     const HeightParameters p = height_parameters(map);
@@ -78,8 +78,8 @@ TEST(HeightParameters, OfASampledSinusoidAreTheSumsOverItsPoints) {
 }
 
 TEST(HeightParameters, OfASampledTriangleAreTheSumsOverItsPoints) {
-    // 0, 1/2, 1, 1/2, 0, -1/2, -1, -1/2 times the amplitude: mean square 3/8 (1/3 on the continuous line), mean
-    // fourth power 9/32.
+    // The values are 0, 1/2, 1, 1/2, 0, -1/2, -1, -1/2 times the amplitude: mean square 3/8 (1/3 on the continuous
+    // line), mean fourth power 9/32.
     const double amplitude = 0.004;
     const auto map = sampled(80, 2, 1, [=](double x, double) {
         const double phase = std::fmod(x + 0.3, 8.0);
@@ -94,8 +94,8 @@ TEST(HeightParameters, OfASampledTriangleAreTheSumsOverItsPoints) {
 }
 
 TEST(HeightParameters, OfAStep) {
-    // A share q at the height h, the rest at zero: Sq^2 = q (1 - q) h^2, Sa = 2 q (1 - q) h,
-    // Ssk = (1 - 2 q) / sqrt(q (1 - q)).
+    // With a share q at the height h and the rest at zero, Sq^2 = q (1 - q) h^2, Sa = 2 q (1 - q) h, Ssk = (1 - 2 q) /
+    // sqrt(q (1 - q)).
     const double h = 0.01, q = 0.2;
     const auto map = sampled(50, 4, 1, [=](double x, double) { return x + 0.3 < 9.5 ? h : 0.0; });
     const HeightParameters p = height_parameters(map);
@@ -107,7 +107,7 @@ TEST(HeightParameters, OfAStep) {
 }
 
 TEST(HeightParameters, OfASphereCap) {
-    // Over its base, a disc of radius a: mean height by the cap's volume, Sq by the mean of R^2 - r^2.
+    // Over its base, a disc of radius a, the cap has the mean height of its volume, and Sq by the mean of R^2 - r^2.
     const double r = 1, a = 0.4, pitch = 1e-3;
     const auto map = sampled(803, 803, pitch, [=](double x, double y) {
         const double square = std::pow(x + 0.3 - 0.401, 2) + std::pow(y - 0.2 - 0.401, 2);
@@ -125,7 +125,8 @@ TEST(HeightParameters, OfASphereCap) {
     EXPECT_NEAR(p.measured_share, pi * a * a / std::pow(803 * pitch, 2), 1e-4);
 }
 
-// How many standard errors Sa, Sq, Ssk and Sku of n heights lie off those of a normal distribution.
+// The largest number of standard errors by which Sa, Sq, Ssk and Sku of n heights lie off those of a normal
+// distribution.
 double worst_z(const HeightMap& map, double sigma) {
     const double n = static_cast<double>(map.height.values.size());
     const HeightParameters p = height_parameters(map);
@@ -139,9 +140,9 @@ TEST(HeightParameters, OfNormalNoiseWithinTheirStandardErrors) {
     std::mt19937_64 random(5);
     std::normal_distribution<double> normal(0, sigma);
     std::uniform_real_distribution<double> uniform(-sigma * std::sqrt(3.0), sigma * std::sqrt(3.0));
-    // Four normal values beyond 4.5: probability 4 x 6.8e-6 or less.
+    // Four normal values exceed 4.5 with a probability of 4 x 6.8e-6 or less.
     EXPECT_LT(worst_z(sampled(300, 300, 1, [&](double, double) { return normal(random); }), sigma), 4.5);
-    // The wrong twins: a uniform distribution of the same Sq, and a standard deviation 3 % greater.
+    // The wrong twins are a uniform distribution of the same Sq, and a standard deviation 3 % greater.
     EXPECT_GT(worst_z(sampled(300, 300, 1, [&](double, double) { return uniform(random); }), sigma), 4.5);
     EXPECT_GT(worst_z(sampled(300, 300, 1, [&](double, double) { return normal(random); }), 1.03 * sigma), 4.5);
 }

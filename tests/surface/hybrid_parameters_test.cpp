@@ -25,7 +25,7 @@ TEST(HybridParameters, OfATiltedPlaneAreItsSlopeAndItsSecant) {
 TEST(HybridParameters, OfASampledSinusoidKeepTheShareOfDifferences) {
     const double amplitude = 1e-4, pitch = 0.002, n = 16;
     for (const bool along_x : {true, false}) {
-        // Whole periods between the first and the last point: differences average over all phases alike.
+        // There are whole periods between the first and the last point: differences average over all phases alike.
         const auto map = sampled(65, 65, pitch, [=](double x, double y) {
             return amplitude * std::sin(2 * pi * (along_x ? x : y) / (n * pitch));
         });
@@ -46,10 +46,10 @@ TEST(HybridParameters, OfAnEggBoxComeNearItsGradient) {
     const double share = std::sin(pi / n) / (pi / n), exact = amplitude * k / std::sqrt(2.0);
     EXPECT_NEAR(share, 0.984, 5e-4); // 1.6 % lost
     const HybridParameters p = hybrid_parameters(map);
-    // The row more than whole periods: a 400th of the mean square along the other axis.
+    // The map has a row more than whole periods: a 400th of the mean square along the other axis.
     EXPECT_NEAR(p.sdq, share * exact, 2e-3 * exact);
     EXPECT_NEAR(p.sdr, std::pow(share * exact, 2) / 2, 2.5e-3 * exact * exact);
-    // Nearer than the mean of cells.
+    // The parameter is nearer than the mean of cells, the wrong twin.
     EXPECT_GT(p.sdq, 1.01 * share * exact * std::sqrt((1 + std::pow(std::cos(pi / n), 2)) / 2));
     // A third of 160 000 points forgotten leaves 70 000 pairs: 1 / sqrt(2 x 70 000) of scatter.
     forget_a_third(map);
@@ -57,7 +57,8 @@ TEST(HybridParameters, OfAnEggBoxComeNearItsGradient) {
 }
 
 TEST(HybridParameters, OfASphereCapGiveItsArea) {
-    // Area 2 pi R h over pi a^2. Sdq^2 is the mean of r^2 / (R^2 - r^2) over the disc, -(R/a)^2 ln(1 - (a/R)^2) - 1.
+    // The cap's area is 2 pi R h over pi a^2. Sdq^2 is the mean of r^2 / (R^2 - r^2) over the disc, -(R/a)^2 ln(1 -
+    // (a/R)^2) - 1.
     const double r = 1, a = 0.4;
     const auto map = sampled(803, 803, 1e-3, [=](double x, double y) {
         const double square = std::pow(x + 0.3 - 0.401, 2) + std::pow(y - 0.2 - 0.401, 2);
@@ -79,14 +80,15 @@ TEST(HybridParameters, AreUndefinedWithoutAWholeCell) {
     EXPECT_TRUE(std::isnan(hybrid_parameters(map).sdr));
 }
 
-// sin(2 a) / (2 a) over sin(a) / a is cos(a), a = pi over the points a period.
+// Differences of twice the spacing keep sin(2 a) / (2 a) over sin(a) / a = cos(a) of the slope, a = pi over the points
+// a period.
 TEST(HybridParameters, TellWhatSamplingTakesOfTheSlope) {
     for (const double points : {8.0, 16.0, 40.0}) {
         const auto map = sampled(4000, 4, 1, [&](double x, double) { return std::sin(2 * pi * x / points); });
         const auto p = hybrid_parameters(map);
-        // The ends lack a difference of 4000, or two: a sixth of that, of the loss.
+        // The ends lack a difference of 4000, or two: a sixth of that is missing in the loss.
         EXPECT_NEAR(p.sdq_loss, (1 - std::cos(pi / points)) / 3, 1e-4);
-        // The slope itself, and how near the extrapolation comes to it.
+        // The extrapolation comes near the slope itself.
         const double slope = 2 * pi / points / std::sqrt(2.0);
         EXPECT_NEAR(p.sdq * (1 + p.sdq_loss), slope, 0.004 * slope);
     }

@@ -22,7 +22,7 @@ double tail(double t) {
     return 0.5 * std::erfc(t / std::sqrt(2.0));
 }
 
-// tail(result) = share
+// The height t above which the tail holds this share: tail(t) = share.
 double quantile(double share) {
     double low = -10, high = 10;
     for (int k = 0; k < 60; ++k)
@@ -44,7 +44,7 @@ TEST(MaterialRatio, OfANormalDistributionHasItsClosedForms) {
     const double sigma = 0.002;
     const MaterialRatioCurve curve(normal_heights(sigma));
     EXPECT_NEAR(curve.height(0.5), 0.05, 1e-9);
-    // Linear between points a ratio of 2.5e-5 apart.
+    // The curve is linear between points a ratio of 2.5e-5 apart.
     EXPECT_NEAR(curve.height(0.1), 0.05 + sigma * quantile(0.1), 1e-8);
     EXPECT_NEAR(curve.ratio(0.05 + sigma), tail(1), 1e-7);
 
@@ -57,7 +57,7 @@ TEST(MaterialRatio, OfANormalDistributionHasItsClosedForms) {
     const double t = quantile(0.3);
     const double fall = (0.5 / std::sqrt(pi) * std::erf(t) - 2 * 0.2 * density(t)) / (2 * std::pow(0.2, 3) / 3);
     const CoreParameters p = core_parameters(curve);
-    // n = 40 000 points: the window is right to some points, the sums to 1/n^2; the tails' last points, each 1/n of
+    // With n = 40 000 points the window is right to some points, the sums to 1/n^2; the tails' last points, each 1/n of
     // the area, are known to a share of a standard deviation or so.
     EXPECT_NEAR(p.sk, sigma * fall, 1e-5 * sigma);
     const double share = tail(fall / 2);
@@ -73,7 +73,8 @@ TEST(MaterialRatio, OfANormalDistributionHasItsClosedForms) {
 TEST(MaterialRatio, VolumesOfANormalDistributionHaveTheirClosedForms) {
     const double sigma = 0.002;
     const VolumeParameters p = volume_parameters(MaterialRatioCurve(normal_heights(sigma)));
-    // Material above t: density - t tail; void below: that plus t. 1/n for the points at the ends.
+    // The material above t is density - t tail, the void below it that plus t. The tolerance is 1/n for the points at
+    // the ends.
     const auto material = [=](double ratio) {
         const double t = quantile(ratio);
         return sigma * (density(t) - t * ratio);
@@ -92,13 +93,13 @@ TEST(MaterialRatio, OfATiltedPlaneIsAllCore) {
     map.height(17, 1) = not_measured;
     const MaterialRatioCurve curve(map);
     const CoreParameters p = core_parameters(curve);
-    // n steps of 0.001, less what the one missing point moves.
+    // The plane falls by n steps of 0.001, less what the one missing point moves.
     EXPECT_NEAR(p.sk, 0.001 * n, 0.001);
     EXPECT_NEAR(p.spk, 0, 0.001);
     EXPECT_NEAR(p.svk, 0, 0.001);
     EXPECT_NEAR(p.smr1, 0, 1e-3);
     EXPECT_NEAR(p.smr2, 1, 1e-3);
-    // Triangles over a tenth and a fifth of the area: 0.1^2 / 2 and 0.2^2 / 2 of the whole fall.
+    // The volumes are triangles over a tenth and a fifth of the area: 0.1^2 / 2 and 0.2^2 / 2 of the whole fall.
     const VolumeParameters v = volume_parameters(curve);
     EXPECT_NEAR(v.vmp, 0.005, 1e-4);
     EXPECT_NEAR(v.vmc, 0.32 - 0.005, 1e-3);
@@ -119,7 +120,7 @@ TEST(MaterialRatio, OfATriangleIsThatOfATiltedPlane) {
 }
 
 TEST(MaterialRatio, OfASinusoidHasItsClosedForm) {
-    // Smc(q) = A cos(pi q); the volume above the share q: A (sin(pi q) / pi - q cos(pi q)).
+    // The curve is Smc(q) = A cos(pi q), and the volume above the share q is A (sin(pi q) / pi - q cos(pi q)).
     const double amplitude = 0.01;
     const auto map =
         sampled(4000, 1, 1, [=](double x, double) { return amplitude * std::sin(2 * pi * (x + 0.3 + 0.25) / 400); });

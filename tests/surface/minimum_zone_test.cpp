@@ -13,9 +13,9 @@ using namespace test;
 
 constexpr double zone = 0.002;
 
-// Flat but for three hills of the zone's height about one pit of depth 0 in the middle of their triangle: no tilt
-// lowers the range, since each hill that sinks lifts another. The least-squares plane is tilted by a corner that stands
-// out.
+// The map is flat but for three hills of the zone's height about one pit of depth 0 in the middle of their triangle: no
+// tilt lowers the range, since each hill that sinks lifts another. The least-squares plane is tilted by a corner that
+// stands out.
 TEST(MinimumZone, ThreeHillsAboutAPitHoldTheZone) {
     for (const double tilt : {0.0, 0.02}) {
         HeightMap map = sampled(41, 41, 0.01, [&](double, double) { return 0.4 * zone; });
@@ -32,7 +32,7 @@ TEST(MinimumZone, ThreeHillsAboutAPitHoldTheZone) {
     }
 }
 
-// A hill between two pits on one line: the zone's planes touch on a line, the tilt across it is open.
+// A hill lies between two pits on one line: the zone's planes touch on a line, and the tilt across it is open.
 TEST(MinimumZone, OfACylinderIsItsSag) {
     const auto map = sampled(81, 21, 0.005, [&](double x, double) { return zone * std::pow((x + 0.1) / 0.2, 2); });
     EXPECT_NEAR(minimum_zone(map), zone, 1e-5 * zone); // x + 0.1 from -0.2 to 0.2

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-// Every term up to degree 4, over a frame far from the origin.
+// A polynomial with every term up to degree 4, over a frame far from the origin.
 double quartic(double x, double y) {
     return 0.1 + x - 2 * y + 3 * x * x - x * y + y * y + 5 * x * x * x - 2 * x * y * y + 7 * x * x * y * y +
            y * y * y * y;
@@ -30,7 +30,7 @@ TEST(Polynomial, IsFoundToRoundingOverTheMeasuredPoints) {
     int measured = 0;
     for (int row = 0; row < map.rows(); ++row)
         for (int column = 0; column < map.columns(); ++column) {
-            // Between and at the gaps too.
+            // The form is exact between the points and at the gaps too.
             EXPECT_NEAR(form.height(map.x(column), map.y(row)), quartic(map.x(column), map.y(row)), 1e-12);
             EXPECT_EQ(std::isnan(level.height(column, row)), std::isnan(map.height(column, row)));
             measured += !std::isnan(level.height(column, row));

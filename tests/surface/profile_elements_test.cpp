@@ -25,7 +25,7 @@ double sine(double turns) {
     return amplitude * std::sin(2 * pi * turns);
 }
 
-// All parameters of a sinusoid over whole periods, by integrals; points are half a step off its crossings.
+// All parameters of a sinusoid over whole periods follow from integrals; points are half a step off its crossings.
 TEST(ProfileElements, ParametersOfASinusoidHaveTheirClosedForms) {
     const auto p = profile_parameters(made(sine), 5);
     const double step = pi / points_a_period; // half a point, in rad: what sampling may miss, squared
@@ -37,8 +37,8 @@ TEST(ProfileElements, ParametersOfASinusoidHaveTheirClosedForms) {
     EXPECT_NEAR(p.rsk, 0, 1e-9);
     EXPECT_NEAR(p.rku, 1.5, 1e-9);
     EXPECT_NEAR(p.rsm, points_a_period * spacing, 1e-9);
-    // Differences of neighbours: 2 A sin(pi / n) over the spacing, a cosine again. One of 2000 is missing, of the
-    // steepest: a 2000th of the mean square.
+    // Differences of neighbours are 2 A sin(pi / n) over the spacing, a cosine again. Of 2000 differences one of the
+    // steepest is missing: a 2000th of the mean square.
     EXPECT_NEAR(p.rdq, std::sqrt(2.0) * amplitude * std::sin(pi / points_a_period) / spacing, p.rdq / 2000);
     // The height exceeded on a share m is A cos(pi m).
     EXPECT_NEAR(p.rdc, 2 * amplitude * std::cos(0.02 * pi), 0.01 * amplitude);
@@ -56,7 +56,7 @@ TEST(ProfileElements, ARampIsAllCore) {
     EXPECT_NEAR(p.rdc, 0.96 * height, 1e-3 * height);
 }
 
-// Ripple of less than a tenth of Rz crosses the reference line more often, and is no element.
+// A ripple of less than a tenth of Rz crosses the reference line more often, and is no element.
 TEST(ProfileElements, RippleIsNoElement) {
     const auto rippled = [](double ripple) {
         return made([=](double turns) { return sine(turns) + ripple * std::sin(2 * pi * turns * 23); });

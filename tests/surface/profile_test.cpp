@@ -15,9 +15,10 @@ using namespace test;
 
 TEST(Profile, IsExactForWhatIsBilinear) {
     auto map = sampled(41, 31, 0.01, [](double x, double y) { return 1 + 2 * x - 3 * y + 5 * x * y; });
-    // Between points, oblique; whole cells from the map's edges.
+    // The profile runs between points and obliquely; cells are whole from the map's edges.
     const Profile p = extract_profile(map, -0.3, 0.2, 0.1, 0.5, 0.003);
-    // 0.5 / 0.003 = 166.7 steps. x y is bilinear in a cell, but a line leaves it: at the points themselves it holds.
+    // The length is 0.5 / 0.003 = 166.7 steps. x y is bilinear in a cell, but a line leaves it: at the points
+    // themselves it holds.
     ASSERT_EQ(p.height.size(), 167u);
     for (std::size_t k = 0; k < p.height.size(); ++k) {
         const double x = -0.3 + 0.8 * 0.003 * static_cast<double>(k), y = 0.2 + 0.6 * 0.003 * static_cast<double>(k);
@@ -29,7 +30,7 @@ TEST(Profile, HasGapsWhereAPointThatCountsIsNotMeasured) {
     auto map = sampled(11, 3, 0.01, [](double x, double) { return x; });
     map.height(5, 1) = not_measured;
     map.height(5, 2) = not_measured;
-    // Along the row of grid points 1, half-way steps: 4.5, 5 and 5.5 need column 5.
+    // Along the row of grid points 1, in steps of half a point, 4.5, 5 and 5.5 need column 5.
     const Profile on = extract_profile(map, -0.3, 0.21, -0.2, 0.21, 0.005);
     ASSERT_EQ(on.height.size(), 21u);
     for (int k = 0; k < 21; ++k)
@@ -37,7 +38,7 @@ TEST(Profile, HasGapsWhereAPointThatCountsIsNotMeasured) {
     // Row 0 alone is whole: its neighbours have no weight.
     for (const double z : extract_profile(map, -0.3, 0.2, -0.2, 0.2, 0.005).height)
         EXPECT_FALSE(std::isnan(z));
-    // Beyond the map.
+    // There are no heights beyond the map.
     EXPECT_TRUE(std::isnan(extract_profile(map, -0.31, 0.2, -0.2, 0.2, 0.01).height.front()));
     EXPECT_THROW(extract_profile(map, 0, 0, 1, 1, 0), std::invalid_argument);
 }
@@ -47,7 +48,7 @@ TEST(Profile, FilterPassesHalfAtItsCutOff) {
     Profile wave{.height = {}, .spacing = spacing};
     for (int k = -400; k <= 400; ++k)
         wave.height.push_back(std::cos(2 * pi * k * spacing / wavelength));
-    // As of the areal filter (filter_test.cpp): the weights beyond the cut-off are missing, 1e-5.
+    // The tolerance is that of the areal filter (filter_test.cpp): the weights beyond the cut-off are missing, 1e-5.
     EXPECT_NEAR(gaussian_low_pass(wave, wavelength).height[400], 0.5, 1e-5);
     EXPECT_NEAR(remove_long_waves(wave, wavelength).height[400], 0.5, 1e-5);
     EXPECT_NEAR(gaussian_low_pass(wave, wavelength / 2).height[400], std::pow(0.5, 0.25), 1e-5);

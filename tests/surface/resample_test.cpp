@@ -53,7 +53,7 @@ TEST(Resample, AveragesAFinerMapOverTheCell) {
     const double u = pi * width / wavelength;
     for (int column = 0; column < 6; ++column)
         EXPECT_NEAR(coarse.height(column, 2), std::sin(u) / u * std::cos(2 * pi * coarse.x(column) / wavelength), 3e-3);
-    // What the coarse grid cannot resolve does not alias: point by point it would be seen in full.
+    // Waves that the coarse grid cannot resolve do not alias: sampled point by point, they would be seen in full.
     const auto fine = sampled(60, 50, pitch, [=](double x, double) { return std::cos(2 * pi * x / width); });
     for (const double z : resampled(fine, grid(6, 4, -0.2, 0.27, width)).height.values)
         EXPECT_NEAR(z, 0, 1e-12);
@@ -63,7 +63,7 @@ TEST(Resample, KeepsPlanesWhereTheMapIsFiner) {
     const auto plane = [](double x, double y) { return 3 * x - 2 * y + 1; };
     const HeightMap map = sampled(60, 50, 0.01, plane);
     for (const double ratio : {1.02, 1.25, 1.5, 1.9, 2.0, 2.3, 3.0, 3.7, 4.0}) {
-        // From border to border.
+        // The coarse grid reaches from border to border.
         const HeightMap coarse = resampled(
             map, grid(static_cast<int>(59 / ratio) + 1, static_cast<int>(49 / ratio) + 1, -0.3, 0.2, 0.01 * ratio));
         int measured = 0;
@@ -83,7 +83,7 @@ TEST(Resample, KeepsPlanesWhereTheMapIsFiner) {
 
 TEST(Resample, IsThePlainMeanAtWholeRatios) {
     const HeightMap map = sampled(60, 50, 0.01, [](double x, double y) { return std::sin(90 * x) * std::cos(70 * y); });
-    // Cells of three points about a point, and of two between points.
+    // The cells hold three points about a point, or two between points.
     const HeightMap three = resampled(map, grid(10, 8, -0.2, 0.3, 0.03)),
                     two = resampled(map, grid(10, 8, -0.195, 0.305, 0.02));
     for (int row = 0; row < 8; ++row)
@@ -107,10 +107,11 @@ TEST(Resample, IsNotMeasuredBeyondTheMapAndAtGaps) {
             map.height(column, row) = not_measured;
     const HeightMap cubic = resampled(map, grid(80, 3, -0.4, 0.4, 0.01));
     for (int column = 0; column < 80; ++column)
-        // On the map's own points: the gap is as wide as it is.
+        // On the map's own points the gap is as wide as it is.
         EXPECT_EQ(std::isnan(cubic.height(column, 1)), column < 10 || column >= 70 || (column >= 30 && column < 40))
             << column;
-    // Cells of four pitches about -0.28 + 0.04 k: nine tenths must be there. The gap's own cells end half a pitch off.
+    // The cells are four pitches wide about -0.28 + 0.04 k: nine tenths must be there. The gap's own cells end half a
+    // pitch off.
     const HeightMap mean = resampled(map, grid(14, 3, -0.28, 0.4, 0.04));
     for (int column = 0; column < 14; ++column) {
         const double x = mean.x(column);

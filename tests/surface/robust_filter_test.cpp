@@ -37,7 +37,7 @@ double root_mean_square(const HeightMap& a, const HeightMap& b) {
     return std::sqrt(sum / count);
 }
 
-// A spike a thousand times the noise, which a mean spreads over its window.
+// The map has a spike a thousand times the noise, which a mean spreads over its window.
 TEST(RobustFilter, SpikesAndHolesTakeNoPart) {
     const HeightMap clean = noisy();
     HeightMap spiked = clean;
@@ -45,19 +45,19 @@ TEST(RobustFilter, SpikesAndHolesTakeNoPart) {
     spiked.height(20, 70) -= 0.1;
     const double index = 0.01;
     const HeightMap low = robust_gaussian_low_pass(spiked, index);
-    // Two points fewer of those in the window, some 2 x 50 of 12 000 places see them: less than the noise by far.
+    // Two points fewer are in the window, which some 2 x 50 of 12 000 places see: less than the noise by far.
     EXPECT_LT(root_mean_square(low, robust_gaussian_low_pass(clean, index)), 0.05 * noise);
     // The wrong twin is the linear filter.
     EXPECT_GT(root_mean_square(gaussian_low_pass(spiked, index), gaussian_low_pass(clean, index)), 0.5 * noise);
 }
 
-// c is 3 standard deviations. There the biweight's efficiency is 0.7727, (E psi')^2 / E psi^2 of psi = x (1 -
+// The biweight's c is 3 standard deviations. Its efficiency is then 0.7727, (E psi')^2 / E psi^2 of psi = x (1 -
 // (x/3)^2)^2 over the normal distribution by quadrature. So both means differ by sqrt(1 / 0.7727 - 1) of the linear
 // one's own noise; to a fifth with 44 points in a window.
 TEST(RobustFilter, DiffersFromTheLinearOneByItsEfficiencyWhereNothingStandsOut) {
     const HeightMap map = noisy();
     const double index = 0.01, alpha = std::sqrt(std::numbers::ln2 / pi);
-    // The noise of the linear mean: one over the root of its effective number of points, 2 (alpha L)^2.
+    // The noise of the linear mean is one over the root of its effective number of points, 2 (alpha L)^2.
     const double own = noise / std::sqrt(2 * std::pow(alpha * index / map.pitch_x, 2));
     const double expected = std::sqrt(1 / 0.7727 - 1) * own;
     EXPECT_NEAR(root_mean_square(robust_gaussian_low_pass(map, index), gaussian_low_pass(map, index)), expected,

@@ -37,12 +37,13 @@ TEST(SpatialParameters, OfAnEggBoxFallAsItsAutocorrelation) {
 }
 
 TEST(SpatialParameters, CountLengthsNotPoints) {
-    // The same heights twice as far apart along y: the lags along y double.
+    // A map of the same heights twice as far apart along y has lags along y twice as long.
     auto map = egg_box(0.03, 0.03, false);
     map.pitch_y *= 2;
     const double k = 2 * pi / 0.03;
     const SpatialParameters p = spatial_parameters(map);
-    // Shortest on the ellipse-like contour cos k tx + cos k ty / 2 = 0.4: by search.
+    // The shortest and the longest lag on the contour cos k tx + cos k ty / 2 = 0.4, which is like an ellipse, are
+    // found by search.
     double shortest = 1, longest = 0;
     for (int i = 0; i <= 2000; ++i) {
         const double tx = std::acos(-0.6) / k * i / 2000.0;
@@ -77,9 +78,10 @@ TEST(SpatialParameters, OfAWaveHaveNoLongestFallAndTheLayOfTheWave) {
 }
 
 TEST(SpatialParameters, OfSmoothedNoiseFallAtTheKernelsLength) {
-    // White noise through a Gaussian of standard deviation s has the autocorrelation exp(-t^2 / (4 s^2)), 0.2 at
-    // 2 s sqrt(ln 5). With n^2 / (2 pi s_x s_y) = 2100 independent patches the estimate at a lag has a standard
-    // deviation of 2.2 %, over a slope of 0.2 sqrt(ln 5) / s: 3.4 % of the length. Four of these, and of the ratio's.
+    // White noise through a Gaussian of standard deviation s has the autocorrelation exp(-t^2 / (4 s^2)), 0.2 at 2 s
+    // sqrt(ln 5). With n^2 / (2 pi s_x s_y) = 2100 independent patches the estimate at a lag has a standard deviation
+    // of 2.2 %, over a slope of 0.2 sqrt(ln 5) / s: 3.4 % of the length. Four of these are allowed, and four of the
+    // ratio's.
     const double s_x = 3, s_y = 9;
     const int n = 600;
     std::mt19937_64 random(7);
@@ -106,14 +108,14 @@ TEST(SpatialParameters, OfSmoothedNoiseFallAtTheKernelsLength) {
     const SpatialParameters p = spatial_parameters(map);
     EXPECT_NEAR(p.sal, 2 * 0.001 * s_x * std::sqrt(std::log(5.0)), 0.14 * p.sal);
     EXPECT_NEAR(p.str, s_x / s_y, 0.2 * s_x / s_y);
-    // The wrong twin: the kernel's own width, sqrt(2) less.
+    // The wrong twin is the kernel's own width, sqrt(2) less.
     EXPECT_GT(std::abs(p.sal - 0.001 * s_x * std::sqrt(2 * std::log(5.0))), 0.14 * p.sal);
     // Waves run along x: the lay is along y.
     EXPECT_GT(std::abs(p.std_angle), pi / 4);
 }
 
 TEST(SpatialParameters, DoNotDependOnTheUnitOfHeights) {
-    // Down to an Sq of 0.01 nm, whose squares in mm are 1e-16 of a pair.
+    // Heights are scaled down to an Sq of 0.01 nm, whose squares in mm are 1e-16 of a pair.
     for (const bool gaps : {false, true}) {
         auto map = egg_box(0.03, 0.045, gaps);
         const SpatialParameters p = spatial_parameters(map);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-// Over a disc of the radius 0.1 mm about (-0.2, 0.3).
+// A cap over a disc of the radius 0.1 mm about (-0.2, 0.3).
 HeightMap cap(double radius, bool convex) {
     return sampled(101, 101, 0.002, [=](double x, double y) {
         const double square = std::pow(x + 0.2, 2) + std::pow(y - 0.3, 2);
@@ -64,7 +64,7 @@ TEST(Sphere, MinimisesTheDistancesAndNotTheHeights) {
     // Student's t of 19 degrees of freedom exceeds 4.6 with the probability 2e-4.
     EXPECT_LT(std::abs(mean), 4.6 * error);
     EXPECT_GT(error, 0);
-    // The wrong twin, a radius a sigma / 10 longer.
+    // The wrong twin is a radius sigma / 10 longer.
     EXPECT_GT(std::abs(mean - sigma / 10), 4.6 * error);
 }
 

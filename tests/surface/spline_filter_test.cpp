@@ -17,7 +17,7 @@ using namespace test;
 
 constexpr double pitch = 0.002;
 
-// Mirrored at its borders this wave goes on as it is.
+// A wave that, mirrored at its borders, goes on as it is.
 double mode(int k, int point, int points) {
     return std::cos(pi * k * (point + 0.5) / points);
 }
@@ -47,7 +47,7 @@ TEST(SplineFilter, PassesEveryDirectionByItsTransmission) {
         0.05);
 }
 
-// Gauss's elimination with pivots.
+// Solves a system of equations by Gauss's elimination with pivots.
 std::vector<double> solved(std::vector<std::vector<double>> matrix, std::vector<double> right) {
     const std::size_t n = right.size();
     for (std::size_t k = 0; k < n; ++k) {
@@ -77,7 +77,7 @@ TEST(SplineFilter, LeavesGapsOutOfTheFitWithMirroredEnds) {
     auto map = sampled(columns, rows, pitch, [](double x, double y) { return std::sin(900 * x) + y * y + 3 * x; });
     forget_a_third(map);
     const double nesting_index = 5 * pitch;
-    // mu times the squared Laplacian as a matrix, mode by mode.
+    // The matrix is mu times the squared Laplacian, mode by mode.
     const auto n = static_cast<std::size_t>(columns * rows);
     std::vector<std::vector<double>> matrix(n, std::vector<double>(n));
     for (int k = 0; k < columns; ++k)
@@ -104,13 +104,13 @@ TEST(SplineFilter, LeavesGapsOutOfTheFitWithMirroredEnds) {
     for (std::size_t i = 0; i < n; ++i) {
         EXPECT_EQ(std::isnan(low.height.values[i]), std::isnan(map.height.values[i]));
         if (!std::isnan(low.height.values[i])) {
-            // The residual ends at 1e-5 of the heights' norm, that of 50 of about 1.
+            // The residual ends at 1e-5 of the heights' norm, that of 50 heights of about 1.
             EXPECT_NEAR(low.height.values[i], expected[i], 1e-4);
         }
     }
 }
 
-// 1 where measured, plus the bending energy difference by difference, as a matrix.
+// The matrix of natural ends: 1 where measured, plus the bending energy difference by difference.
 std::vector<std::vector<double>> bending(const HeightMap& map, double nesting_index) {
     const int columns = map.columns(), rows = map.rows();
     const auto n = map.height.values.size();
@@ -163,7 +163,7 @@ TEST(SplineFilter, WithNaturalEndsIsTheSolutionOfItsEquations) {
                 const HeightMap low = spline_low_pass(map, index * pitch);
                 for (std::size_t k = 0; k < n; ++k)
                     if (!std::isnan(map.height.values[k])) {
-                        // Gaps: to the goal, 1e-5 of the norm of 100 heights of some units.
+                        // With gaps the iteration ends at its goal, 1e-5 of the norm of 100 heights of some units.
                         EXPECT_NEAR(low.height.values[k], expected[k], gaps ? 1e-3 : 1e-9)
                             << columns << " x " << rows << ", " << index;
                     }
@@ -189,8 +189,8 @@ TEST(SplineFilter, WithNaturalEndsPassesAPlane) {
 }
 
 TEST(SplineFilter, WithNaturalEndsTransmitsByTheStandardsFunction) {
-    // In the middle of a profile of 1000 points, 8 nesting indices from either end, where their influence is less than
-    // exp(-pi sqrt(2) 8) = 4e-16.
+    // Heights are compared in the middle of a profile of 1000 points, 8 nesting indices from either end, where the
+    // ends' influence is less than exp(-pi sqrt(2) 8) = 4e-16.
     const double index = 60 * pitch;
     for (const double points : {20.0, 45.0, 60.0, 90.0, 150.0}) {
         const double wavelength = points * pitch;
@@ -212,7 +212,8 @@ TEST(SplineFilter, DoesNotSeeAnOffset) {
     const HeightMap low = spline_low_pass(map, 0.02), raised_low = spline_low_pass(raised, 0.02);
     for (std::size_t k = 0; k < low.height.values.size(); ++k)
         if (!std::isnan(low.height.values[k])) {
-            // To the goal of 1e-5 of the heights' norm, that of 800 of 5e-4; rounding may end it a step apart.
+            // The two iterations end at the goal of 1e-5 of the heights' norm, that of 800 heights of 5e-4; rounding
+            // may end one a step apart.
             EXPECT_NEAR(raised_low.height.values[k] - 10, low.height.values[k], 2e-7);
         }
 }

@@ -1,5 +1,5 @@
-// GSF, GWY, NPY, tables of heights, and the formats of instruments that are read alone: files as other programs write
-// them, byte by byte, and hostile ones.
+// GSF, GWY, NPY, tables of heights, and the formats of instruments that are read alone are read from files as other
+// programs write them, byte by byte, and hostile ones are refused.
 #include "support/instrument_files.hpp"
 #include "surface_files/gsf.hpp"
 #include "surface_files/gwy.hpp"
@@ -92,7 +92,7 @@ TEST(SurfaceFormats, TextOfATableThatLooksLikeItsScaleStaysText) {
     expect_same_map(read.map, wave(), 0);
     EXPECT_EQ(read.provenance.comment, named.comment);
     EXPECT_EQ(height_table(read.map, read.provenance), table);
-    // A heading's line that is no comment is none of it.
+    // A line of the heading that is no comment is not part of it.
     const auto at = table.find("# manufacturer");
     const auto other = parse_height_table(table.substr(0, at) + "re#v sion=2\n" + table.substr(at), "a.csv", {});
     EXPECT_TRUE(other.provenance == named);
@@ -139,7 +139,7 @@ std::string npy_of(const std::string& type, const std::string& order, const std:
 TEST(SurfaceFormats, NpyOfEveryTypeAndOrder) {
     using test::raw_points;
     const ImageScale scale{.pitch = 2e-3, .unit = 0.5};
-    // 2 lines of 3; by columns the same lie in another order.
+    // The array has 2 lines of 3; by columns these heights lie in another order.
     const std::vector<double> by_rows = {1, 2, 3, 4, 5, 6}, by_columns = {1, 4, 2, 5, 3, 6};
     const auto expect = [&](const std::string& bytes) {
         const HeightMap map = parse_npy(bytes, "a.npy", scale).map;
@@ -169,7 +169,7 @@ TEST(SurfaceFormats, NpyOfEveryTypeAndOrder) {
     expect_refusal([&] { (void)parse_npy(npy_bytes(wave()), "a.npy", {}); }, "unit");
 }
 
-// Lines of the file, first line first.
+// The heights of the lines of a table, first line first.
 std::vector<double> table_values(const std::string& text, const char* name = "a.csv") {
     const HeightMap map = parse_height_table(text, name, {.pitch = 1, .unit = 1}).map;
     std::vector<double> values;
@@ -227,7 +227,7 @@ TEST(SurfaceFormats, TablesOfOtherProgramsStateTheirScale) {
     const HeightMap map = parse_height_table(focus + rows, "a.txt", {}).map;
     EXPECT_DOUBLE_EQ(map.pitch_x, 2e-3);
     EXPECT_NEAR(map.height(1, 0), 4e-6, 1e-18);
-    // An extent without any unit is none.
+    // An extent without any unit is no extent.
     expect_refusal(
         [&] {
             (void)parse_height_table(std::string("# x-length = 4\n# y-length = 8\n") + rows, "a.txt",
@@ -237,7 +237,7 @@ TEST(SurfaceFormats, TablesOfOtherProgramsStateTheirScale) {
 }
 
 TEST(SurfaceFormats, PointsOnAGrid) {
-    // In any order; one is left out.
+    // Points may be in any order; one is left out.
     const HeightMap map = parse_height_table("x y z\n1.0 5 1\n1.5 5 2\n2.0 5 3\n1.0 5.25 4\n2.0 5.25 6\n", "a.xyz",
                                              {.pitch = {}, .unit = 1e-3})
                               .map;
@@ -314,7 +314,7 @@ TEST(SurfaceFormats, TextOfZygo) {
     for (std::size_t length = 20; length + 10 < test::zygo_phases().size(); length += 5) {
         EXPECT_THROW((void)parse_zygo_text(test::zygo_phases().substr(0, length), "a.asc", {}), InputError) << length;
     }
-    // What XYZ files do not say: the unit, which Mx lets its user choose, and sometimes the pitch.
+    // XYZ files do not state the unit, which Mx lets its user choose, and sometimes not the pitch.
     EXPECT_EQ(parse_zygo_text(test::zygo_points(), "a.xyz", {}).warnings.size(), 1U);
     const SurfaceFile waves = parse_zygo_text(test::zygo_points(), "a.xyz", {.pitch = {}, .unit = 0.6328e-3});
     EXPECT_TRUE(waves.warnings.empty());
@@ -325,7 +325,7 @@ TEST(SurfaceFormats, TextOfZygo) {
     EXPECT_EQ(parse_zygo_text(text, "a.xyz", {.pitch = 0.002, .unit = {}}).map.pitch_y, 0.002);
     EXPECT_EQ(parse_zygo_text(test::zygo_points(), "a.xyz", {.pitch = 0.002, .unit = 1e-3}).warnings.size(), 1U);
     EXPECT_THROW((void)parse_zygo_text(test::zygo_phases(), "a.asc", {.pitch = {}, .unit = 1e-3}), InputError);
-    // Heights that fall where phases would rise, and points that the header does not name.
+    // Heights may fall where phases would rise; points that the header does not name are refused.
     text = test::zygo_phases();
     text.replace(text.find("20 2 0 0 0 0 0"), 14, "20 2 0 0 0 1 0");
     EXPECT_NEAR(parse_zygo_text(text, "a.asc", {}).map.height(0, 1), -1e-3, 1e-12);
@@ -339,7 +339,7 @@ TEST(SurfaceFormats, TextOfZygo) {
     }
 }
 
-// Vision64 names its block otherwise.
+// Vision64 gives its block another name.
 TEST(SurfaceFormats, OpdOfEveryNameOfItsBlock) {
     const std::string bytes = instrument_file("opd");
     const auto expected = parse_opd(bytes, "a.opd").map.height.values;
@@ -356,7 +356,7 @@ TEST(SurfaceFormats, OpdOfEveryNameOfItsBlock) {
             EXPECT_TRUE(found[k] == expected[k] || (std::isnan(found[k]) && std::isnan(expected[k]))) << name << k;
     }
     EXPECT_THROW((void)parse_opd(named("Other"), "a.opd"), InputError);
-    // It also writes dates without zeros at their beginning.
+    // Vision also writes dates without zeros at their beginning.
     std::string dated = named("OPD");
     const auto replace = [&dated](const std::string& from, std::string to) {
         to.resize(from.size(), '\0');
@@ -366,7 +366,7 @@ TEST(SurfaceFormats, OpdOfEveryNameOfItsBlock) {
     replace("10/26/2009", "1/2/2003");
     replace("11:16:55", "4:05:6");
     EXPECT_EQ(parse_opd(dated, "a.opd").provenance.date, "2003-01-02T04:05:06Z");
-    // Heights of a byte each, in steps of 5 nm.
+    // Heights may have a byte each, in steps of 5 nm.
     std::string of_bytes = bytes;
     const auto size = of_bytes.find(std::string("\3\0\2\0\2\0", 6));
     ASSERT_NE(size, std::string::npos);

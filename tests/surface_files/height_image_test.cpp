@@ -1,4 +1,4 @@
-// Height maps as OpenEXR: whole files of every layout are read, damaged and lying ones are refused.
+// Height maps as OpenEXR are read from whole files of every layout; damaged and lying ones are refused.
 #include "surface_files/height_image.hpp"
 
 #include "core/messages/error.hpp"
@@ -68,7 +68,7 @@ TEST(HeightImage, TruncatedExrIsRefused) {
             const std::string whole = ExrBytes{.tile = tile, .parts = parts}.bytes();
             EXPECT_NO_THROW((void)heights_of(whole));
             // The last part's pixels are the end of the file: 24 bytes, with number, coordinates and size of two rows
-            // or tiles. Of one part no byte may be missing; a second part is not read.
+            // or tiles. If there is one part, no byte may be missing; a second part is not read.
             const std::size_t needed = whole.size() - (parts == 1 ? 0 : 24 + 2 * (tile == 0 ? 12 : 24));
             for (std::size_t length = 0; length < needed; ++length)
                 expect_refused(whole.substr(0, length), fmt::format("{} of {} bytes", length, whole.size()));

@@ -1,4 +1,5 @@
-// What files state of themselves beside the heights: units, pitches, and what marks points that were not measured.
+// Files state units, pitches and the marks of points that were not measured beside the heights; the readers believe
+// them.
 #include "core/messages/error.hpp"
 #include "surface_files/height_image.hpp"
 #include "surface_files/height_table.hpp"
@@ -31,7 +32,7 @@ SurfaceFile table(const std::string& text, const ImageScale& scale = {}) {
     return parse_height_table(text, "a.csv", scale);
 }
 
-// In um, first line first.
+// The heights in um, first line first.
 std::vector<double> heights_of(const SurfaceFile& file) {
     std::vector<double> values;
     for (int row = file.map.rows() - 1; row >= 0; --row)
@@ -52,7 +53,7 @@ TEST(TableStatements, MarksOfPointsThatWereNotMeasured) {
                     ElementsAre(near(1), near(2), IsNan(), near(4)))
             << mark;
     EXPECT_THAT(heights_of(table("1,2\n1e30,4\n", given))[2], near(1e30)); // warned of, not taken for a mark
-    // In micrometres it is a mark, so in metres too: what is read is written in another unit and read again.
+    // A value that is a mark in micrometres is one in metres too: a map is written in another unit and read again.
     EXPECT_THAT(heights_of(table("# Value units: m\n1,2\n1e34,4\n", {.pitch = 2 * um, .unit = {}}))[2], IsNan());
     for (const char* header :
          {"NODATA_value -9999", "# nodata: -9999", "no data value = -9999.0", "Missing value\t-9999",
@@ -89,7 +90,7 @@ TEST(TableStatements, UnitsInTheNamesOfColumnsAreUsed) {
         EXPECT_THAT(file.map.pitch_x, near(0.002)) << names;
         EXPECT_THAT(file.map.pitch_y, near(0.002)) << names;
         EXPECT_TRUE(file.warnings.empty()) << names;
-        // The same unit by an option says nothing; another is told of, and not used.
+        // An option of the same unit says nothing new; another unit is told of, and not used.
         EXPECT_TRUE(table(std::string(names) + "\n" + points, {.pitch = {}, .unit = um}).warnings.empty()) << names;
         const SurfaceFile contradicted = table(std::string(names) + "\n" + points, {.pitch = {}, .unit = 1.0});
         ASSERT_EQ(contradicted.warnings.size(), 1u) << names;
@@ -112,7 +113,7 @@ TEST(TableStatements, TablesOfInstrumentsAndSpreadsheetsHaveQuotes) {
     const SurfaceFile file = table(header + "\"-0.160\",\"0.033\"\n\"0.292\",\"\"\n");
     EXPECT_THAT(heights_of(file), ElementsAre(near(-0.160), near(0.033), near(0.292), IsNan()));
     EXPECT_THAT(file.map.pitch_x, near(2 * um));
-    // Decimal commas between quotes.
+    // Numbers may have decimal commas between quotes.
     EXPECT_THAT(heights_of(table("\"1,5\",\"2,25\"\n\"3\",\"4,0\"\n", given)),
                 ElementsAre(near(1.5), near(2.25), near(3), near(4)));
     EXPECT_THAT(heights_of(table("\"1,5\";\"2,25\"\n\"3,5\";\"4,0\"\n", given)),
@@ -150,7 +151,7 @@ TEST(TableStatements, AProfileIsNoMap) {
             EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("a profile"), HasSubstr("a map of heights")));
         }
     }
-    // Maps of few columns are maps.
+    // A map of few columns is a map, not a list of points.
     EXPECT_EQ(table("3,1\n1,2\n2,2\n5,4\n", given).map.columns(), 2);
     EXPECT_EQ(table("1,2,3\n4,5,6\n", given).map.columns(), 3);
 }
@@ -163,7 +164,8 @@ std::string npy_of(const std::string& type, const std::string& shape, const std:
 }
 
 TEST(ArrayStatements, HalfFloats) {
-    // 1, -2, the largest (65504), the smallest normal (2^-14), the smallest of all (2^-24), infinity.
+    // The values are 1, -2, the largest (65504), the smallest normal (2^-14), the smallest of all (2^-24), and
+    // infinity.
     const std::vector<std::uint16_t> halves = {0x3c00, 0xc000, 0x7bff, 0x0400, 0x0001, 0x7c00};
     std::string little, big;
     for (const std::uint16_t half : halves) {
@@ -205,7 +207,7 @@ std::string stored(std::initializer_list<Value> values) {
     return bytes;
 }
 
-// 2 x 2 floats 1 2 / 3 4, but for the first one, little-endian; tags in the order of their numbers.
+// A little-endian file of 2 x 2 floats 1 2 / 3 4, but for the first one; tags are in the order of their numbers.
 std::string tiff_of(float first, const std::vector<Tag>& more) {
     constexpr std::uint16_t is_short = 3, is_long = 4;
     constexpr std::uint32_t values_at = 8, directory_at = 24;
@@ -274,7 +276,7 @@ TEST(ImageStatements, ImagejStatesUnitAndPitch) {
     const SurfaceFile other = parse_height_image(with("ImageJ=1.53t\nunit=um\n"), "a.tif", {.pitch = um, .unit = 1.0});
     EXPECT_EQ(other.warnings.size(), 2u);
     EXPECT_THAT(other.map.pitch_x, near(um));
-    // Pixels are no length, and no unit at all is none.
+    // A unit of pixels is no length, and neither is no unit at all.
     EXPECT_THROW((void)parse_height_image(with("ImageJ=1.53t\nunit=pixel\n"), "a.tif", {}), InputError);
     EXPECT_THROW((void)parse_height_image(with("ImageJ=1.53t\nunit=um\ncf=1\n"), "a.tif", {}), InputError);
     EXPECT_THROW((void)parse_height_image(with("Height\nunit=um\n"), "a.tif", {}), InputError);
@@ -301,7 +303,7 @@ TEST(ImplausibleHeights, AreWarnedOf) {
         ASSERT_EQ(found.size(), 1u) << odd;
         EXPECT_THAT(found[0], testing::AllOf(HasSubstr("1 heights"), HasSubstr("a.csv")));
     }
-    // Of a plane without any height a metre is asked.
+    // A plane with a single height may be as high as a metre before the reader warns.
     std::ofstream(folder / "a.csv") << "0,0,0,0\n0,0,0,0\n0,0,1e5,0\n0,0,0,0\n";
     EXPECT_TRUE(read_surface(folder / "a.csv", given).warnings.empty());
     std::ofstream(folder / "a.csv") << "0,0,0,0\n0,0,0,0\n0,0,1.1e6,0\n0,0,0,0\n";

@@ -1,4 +1,4 @@
-// Surface files: what is written reads back and is written the same again, their bytes are what the formats say,
+// Surface files that are written read back and are written the same again, their bytes are what the formats say,
 // foreign files of every variant are read, and hostile ones are refused before they cost anything.
 #include "support/surface_files.hpp"
 #include "surface_files/surface_file.hpp"
@@ -107,7 +107,7 @@ std::string letter_text() {
     return text;
 }
 
-// Heights of every size, of either sign, with gaps.
+// A map of heights of every size, of either sign, with gaps.
 HeightMap wild_map(std::uint32_t seed, double largest) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> exponent(-30, 0), sign(-1, 1);
@@ -179,7 +179,7 @@ TEST_F(SurfaceFiles, HeightsGapsGridAndProvenanceComeBack) {
     }
 }
 
-// Rows from the top in the bytes themselves, found without the readers.
+// In the bytes themselves, found without the readers, rows go from the top.
 TEST_F(SurfaceFiles, TheLetterIsUprightInTheBytes) {
     const HeightMap map = letter_map();
     const auto as_text = [](std::size_t count, const std::function<double(std::size_t)>& metres) {
@@ -203,7 +203,7 @@ TEST_F(SurfaceFiles, TheLetterIsUprightInTheBytes) {
                           return n == gap ? nan : n * step / 1e3;
                       }),
               letter_text());
-    // The wrong twin: rows that were not flipped.
+    // The wrong twin has rows that were not flipped.
     std::string upside_down;
     for (auto line = letter.rbegin(); line != letter.rend(); ++line)
         upside_down += *line;
@@ -220,7 +220,7 @@ TEST_F(SurfaceFiles, PlyHoldsMeasuredPointsAndTheirTriangles) {
     const auto end = bytes.find("end_header\n") + 11;
     EXPECT_THAT(bytes.substr(0, end), testing::HasSubstr("comment creator=vkfv\n"));
     EXPECT_THAT(bytes.substr(0, end), testing::HasSubstr("element vertex 35\n"));
-    // 25 cells of two triangles; the gap is inside and takes part in six.
+    // There are 25 cells of two triangles; the gap is inside and takes part in six.
     EXPECT_THAT(bytes.substr(0, end), testing::HasSubstr("element face 44\n"));
     ASSERT_EQ(bytes.size(), end + 35 * 12 + 44 * 13u);
     const auto coordinate = [&](std::size_t vertex, std::size_t axis) {
@@ -291,7 +291,7 @@ void write_zip(const std::filesystem::path& path, const Entries& entries) {
     ASSERT_EQ(zip_close(archive), 0);
 }
 
-// As other programs write it: 3 x 2 points, the first row on top.
+// An X3P file as other programs write it: 3 x 2 points, the first row on top.
 struct ForeignX3p {
     std::string type = "F", revision = "ISO5436 \xE2\x80\x93 2000", cz, link = "bindata/data.bin", valid_link;
     std::string size_x = "3", size_y = "2", increment = "1e-6", points, valid, points_md5;
@@ -353,7 +353,7 @@ TEST_F(SurfaceFiles, X3pOfEveryTypeIsRead) {
     x3p.points = points_of<double>({1e-6, nan, -2e-6, 0, 3e-6, 4e-6});
     x3p.link = "./bindata/data.bin";
     EXPECT_THAT(heights(x3p), testing::ElementsAre(near(1), gap, near(-2), near(0), near(3), near(4)));
-    // Signed integers with offset and increment, and a mask: bits 0, 2, 3 and 5.
+    // The file has signed integers with offset and increment, and a mask: bits 0, 2, 3 and 5.
     x3p.cz = "<Increment>1e-8</Increment><Offset>1e-6</Offset>";
     x3p.valid = std::string(1, '\x2d');
     x3p.valid_link = "<ValidPointsLink>bindata/valid.bin</ValidPointsLink><MD5ChecksumValidPoints>" + md5(x3p.valid) +
@@ -384,7 +384,7 @@ TEST_F(SurfaceFiles, X3pStatesRightChecksumsAndVersionNeeded) {
     EXPECT_EQ(link.child_value("MD5ChecksumPointData"), md5(entries["bindata/data.bin"]));
     EXPECT_EQ(link.child_value("MD5ChecksumValidPoints"), md5(entries["bindata/valid.bin"]));
     EXPECT_EQ(entries["bindata/data.bin"].size(), 36 * 8u);
-    // 36 bits, the gap at 3 * 6 + 4 = 22, which is bit 6 of byte 2.
+    // The mask has 36 bits, the gap at 3 * 6 + 4 = 22, which is bit 6 of byte 2.
     EXPECT_EQ(entries["bindata/valid.bin"], std::string("\xff\xff\xbf\xff\x0f"));
 }
 
@@ -424,7 +424,7 @@ TEST_F(SurfaceFiles, X3pChecksumsAreChecked) {
     ASSERT_EQ(warnings("main.xml").size(), 1u);
     EXPECT_THAT(warnings("main.xml")[0], testing::HasSubstr("main.xml does not have the MD5 checksum"));
     EXPECT_TRUE(warnings("none").empty());
-    // Hash-only files are read, and files without checksums.
+    // Files whose md5checksum.hex holds the sum alone, or nothing, are read.
     EXPECT_NO_THROW((void)read_surface(with("md5checksum.hex", [](std::string& content) { content.resize(32); })));
     EXPECT_NO_THROW((void)read_surface(with("md5checksum.hex", [](std::string& content) { content.clear(); })));
     EXPECT_NO_THROW((void)read_surface(with("none", [](std::string&) {})));
@@ -456,7 +456,7 @@ TEST_F(SurfaceFiles, HostileX3pIsRefused) {
     refused([](ForeignX3p& x) { x.points.pop_back(); }, "23 bytes");
     refused([](ForeignX3p& x) { x.points_md5 = "00"; }, "MD5");
     refused([](ForeignX3p& x) { x.valid_link = "<ValidPointsLink>v.bin</ValidPointsLink>"; }, "v.bin");
-    // A bomb: 64 MiB in 64 kB; it is cut off at the 24 bytes that the header's points need.
+    // A bomb packs 64 MiB in 64 kB; it is cut off at the 24 bytes that the header's points need.
     refused([](ForeignX3p& x) { x.points.resize(std::size_t{1} << 26); }, "more than 24 bytes");
     write_zip(folder_ / "bad.x3p", {{"other.xml", "<a/>"}});
     expect_refused(folder_ / "bad.x3p", "main.xml");
@@ -464,7 +464,7 @@ TEST_F(SurfaceFiles, HostileX3pIsRefused) {
     expect_refused(folder_ / "bad.x3p", "XML");
 }
 
-// Elements in one another, half a million deep: neither reading nor forgetting them takes more of a stack.
+// Elements are nested half a million deep: neither reading nor forgetting them takes more of a stack.
 TEST_F(SurfaceFiles, DeepXmlOfX3pIsReadOnASmallStack) {
     constexpr int depth = 500000;
     ForeignX3p deep;
@@ -502,8 +502,8 @@ std::string with_text(std::string bytes, std::size_t offset, const std::string& 
 }
 
 TEST_F(SurfaceFiles, SurOf16BitsInOtherUnitsIsRead) {
-    // Micrometres with the sign of Latin-1, NULs after the names, an offset, special points, a comment and a private
-    // zone.
+    // The header has micrometres with the sign of Latin-1, NULs after the names, an offset, special points, a comment
+    // and a private zone.
     std::string bytes = sur_bytes(letter_map(), {}).substr(0, 512);
     bytes = with(bytes, 98, std::int16_t{16});
     bytes = with(with(with(bytes, 108, std::int32_t{3}), 112, std::int32_t{2}), 116, std::int32_t{6});
@@ -532,7 +532,7 @@ TEST_F(SurfaceFiles, SurOf16BitsInOtherUnitsIsRead) {
     };
     check(read_surface(write("a.sur", bytes + zones + points)));
 
-    // The same packed by zlib, in two streams.
+    // The pixels may be packed by zlib, here in two streams.
     const auto stream = [](const std::string& part) {
         std::string packed(100, '\0');
         uLongf length = packed.size();
@@ -664,7 +664,7 @@ TEST_F(SurfaceFiles, Al3dIsRead) {
     ASSERT_EQ(map.rows(), 2);
     EXPECT_DOUBLE_EQ(map.pitch_x, 1e-3);
     EXPECT_DOUBLE_EQ(map.pitch_y, 2e-3);
-    // Float32 metres; rows padded to 16 bytes, the first on top.
+    // The file has metres in float32; rows are padded to 16 bytes, the first on top.
     EXPECT_NEAR(map.height(0, 1), 1e-3, 6e-11);
     EXPECT_TRUE(std::isnan(map.height(1, 1)));
     EXPECT_NEAR(map.height(2, 1), 2e-3, 6e-11);

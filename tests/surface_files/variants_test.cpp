@@ -1,4 +1,4 @@
-// Variants of X3P, SUR, SDF and AL3D that other programs write.
+// Variants of X3P, SUR, SDF and AL3D that other programs write are read.
 #include "surface_files/al3d.hpp"
 #include "surface_files/sdf.hpp"
 #include "surface_files/sur.hpp"
@@ -44,7 +44,7 @@ std::string zipped(const ZipEntries& entries) {
     return bytes;
 }
 
-// 2 x 2 points whose heights stand in `data`, an element of Record3.
+// The main.xml of 2 x 2 points whose heights stand in `data`, an element of Record3.
 std::string main_xml(const std::string& data, const std::string& rotation = "") {
     return "<p:ISO5436_2 xmlns:p='http://www.opengps.eu/2008/ISO5436_2'><Record1><FeatureType>SUR</FeatureType><Axes>"
            "<CX><AxisType>I</AxisType><Increment>1e-6</Increment></CX>"
@@ -72,7 +72,7 @@ std::string rotation_of(const std::string& first) {
     return text + "</Rotation>";
 }
 
-// um, in the file's order.
+// The heights in um, in the file's order.
 std::vector<double> x3p_heights(const ZipEntries& entries) {
     const HeightMap map = parse_x3p(zipped(entries), "a.x3p").map;
     std::vector<double> um;
@@ -120,7 +120,7 @@ TEST(SurfaceVariants, X3pOfAFolderAndWithTheIdentity) {
             "otation");
 }
 
-// What the root element is called does not matter.
+// The name of the root element does not matter.
 TEST(SurfaceVariants, X3pOfAnyRoot) {
     const std::string xml = main_xml(data_list({"1e-6", "2e-6", "3e-6", "4e-6"}));
     const auto expected = parse_x3p(zipped({{"main.xml", xml}}), "a.x3p").map.height.values;
@@ -227,7 +227,7 @@ TEST(SurfaceVariants, SurOfTypeOneWithSeveralRows) {
     std::string profile = sur_bytes(slope(3, 1), {});
     profile[18] = 1;
     expect_told([&] { (void)parse_sur(profile, "a.sur"); }, "a surface");
-    // Without a unit of length: told as what it is, not as an option.
+    // A file without a unit of length is refused for that, not for a missing option.
     bytes[212] = ' ';
     bytes[213] = ' ';
     expect_told([&] { (void)parse_sur(bytes, "a.sur"); }, "unit of length = nothing");
@@ -259,7 +259,7 @@ std::string sdf_of(int type, const std::vector<Stored>& points) {
     return bytes + std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Stored));
 }
 
-// ISO 25178-71, table 2: with the value that means "not measured" where a type has one.
+// Stored values of ISO 25178-71, table 2, with the value that means "not measured" where a type has one.
 template <class Stored>
 void expect_sdf(int type, std::optional<Stored> mark) {
     std::vector<Stored> points = {10, 20, 30, 40, 50, 60};

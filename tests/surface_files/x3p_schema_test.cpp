@@ -1,5 +1,6 @@
-// main.xml against the 2008 schema of X3P (ISO 5436-2): which elements, in which order, how often, with what text. The
-// grammar is a statement of its own of what the schema asks for, sharing nothing with the writer.
+// The main.xml that is written conforms to the 2008 schema of X3P (ISO 5436-2): which elements, in which order, how
+// often, with what text. The grammar is a statement of its own of what the schema asks for, sharing nothing with the
+// writer.
 #include "support/surface_files.hpp"
 #include "surface_files/surface_file.hpp"
 
@@ -19,7 +20,7 @@
 namespace vkfv::surface {
 namespace {
 
-// Texts by XML Schema's lexical rules for the types.
+// Patterns of texts by XML Schema's lexical rules for the types.
 constexpr const char* anything = ".*";
 constexpr const char* token = "([^[:space:]](.*[^[:space:]])?)?";
 constexpr const char* positive_integer = "\\+?0*[1-9][0-9]*";
@@ -93,7 +94,7 @@ bool matches(const char* text, const std::string& pattern) {
     return found;
 }
 
-// Empty: it conforms; else the first fault.
+// The first fault of the element; empty if it conforms.
 std::string fault_of(const pugi::xml_node& node, const Element& element) {
     if (element.text)
         return matches(node.child_value(), element.text) ? "" : node.path() + ": " + node.child_value();

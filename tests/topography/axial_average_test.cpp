@@ -53,7 +53,8 @@ TEST(AxialAverage, EvenSharesHaveTheSameNoiseEverywhere) {
                     place += share.weight * static_cast<double>(share.image);
                 }
                 EXPECT_NEAR(total, 1, 1e-6);
-                // In a shorter stack the middle that the others are made alike may lie between two images.
+                // In a shorter stack the middle, after which the other images are made alike, may lie between two
+                // images.
                 const bool whole = 2 * weights.size() - 1 <= static_cast<std::size_t>(count);
                 EXPECT_NEAR(variance / middle, 1, whole ? 1e-5 : 0.1) << s << " " << count << " " << k;
                 EXPECT_GT(place, before) << s << " " << count << " " << k;
@@ -87,7 +88,7 @@ TEST(AxialAverage, PositionsAreWhatTheAveragesMakeOfAStraightLine) {
         EXPECT_EQ(far[static_cast<std::size_t>(k)].position, k);
 }
 
-// White noise, averaged as images and as a curve that is linear in it.
+// The variances are those of white noise, averaged as images and then as a curve that is linear in it.
 TEST(AxialAverage, VariancesAreThoseOfAveragedNoise) {
     constexpr int trials = 40000;
     std::mt19937 random(5);

@@ -14,7 +14,7 @@
 
 namespace vkfv::topography::test {
 
-// side x side pixels, periodic, of variance 1 and mean 0.
+// Images of side x side pixels, periodic, of variance 1 and mean 0.
 class BlurredNoise {
   public:
     // spectrum(fx, fy): power in cycles per mm before pixels of this pitch (mm) gather it, 0 beyond the cutoff.
@@ -44,10 +44,10 @@ class BlurredNoise {
             value *= static_cast<double>(power_.values.size()) / sum;
         }
     }
-    // Independent pixels.
+    // Noise of independent pixels.
     explicit BlurredNoise(int side) : power_(side, side, 1.0) {}
 
-    // The transform of the power, cut off at the reach.
+    // The correlation of neighbouring pixels: the transform of the power, cut off at the reach.
     NoiseCorrelation correlation() const {
         Grid<std::complex<double>> transform(power_.columns, power_.rows);
         std::ranges::copy(power_.values, transform.values.begin());
@@ -93,8 +93,8 @@ inline BlurredNoise blurred_by_pupil(int side, double aperture, double pitch) {
             [=](double fx, double fy) { return std::pow(in_focus(std::hypot(fx, fy) / cutoff), 2); }};
 }
 
-// The same where every part of the pupil blurs its own light, with the weight that the overlap of the displaced
-// pupils leaves it: 0 or 1.
+// Noise of light of which every part of the pupil blurs its own, with the weight that the overlap of the displaced
+// pupils leaves it: 0 or 1. Wavelength and units are those of blurred_by_pupil().
 inline BlurredNoise blurred_by_parts(int side, double aperture, double pitch) {
     const double cutoff = 2 * aperture / 0.55e-3;
     return {side, pitch, cutoff, [=](double fx, double fy) { return in_focus(std::hypot(fx, fy) / cutoff); }};

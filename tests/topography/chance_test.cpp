@@ -1,4 +1,5 @@
-// What a stack as a whole must show: its points see the same images in the same order.
+// A stack as a whole must show more than chance does: its points see the same images in the same order, so that many
+// pass at once.
 #include "topography/chance.hpp"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@ HeightMap truth_map() {
     return test::map_of(test::random_waves(30, 20, 120, 0.2 * um, 1), 64, 60, 1 * um, 0, 0, [](double) { return 1.0; });
 }
 
-// The truth with other waves of 2 um and an offset of 3 um on it.
+// The truth with further waves of 2 um and an offset of 3 um on it.
 HeightMap measured_map(unsigned seed) {
     HeightMap map = truth_map();
     const auto noise = test::map_of(test::random_waves(30, 400, 500, 0.05 * um, seed), 64, 60, 1 * um, 0, 0,
@@ -61,7 +61,8 @@ TEST(Comparison, IsOfTheTreatedSurfacesButTransferAndSlopesOfTheLevelledOnes) {
 
 TEST(Comparison, WithoutFormKeepsTheOffset) {
     const HeightMap measured = measured_map(2), truth = truth_map();
-    // 30 waves of 0.05 um beside 3 um: sqrt(9 + 30 * 0.05^2 / 2), the waves' mean square known to a tenth or so.
+    // The root mean square of 30 waves of 0.05 um beside 3 um is sqrt(9 + 30 * 0.05^2 / 2), the waves' mean square
+    // known to a tenth or so.
     EXPECT_NEAR(compare(measured, truth, {.form = {.kind = Form::Kind::none}}).rms, 3.006 * um, 0.003 * um);
     EXPECT_LT(compare(measured, truth).rms, 0.3 * um);
     EXPECT_NEAR(deviation_map(measured, truth, {.form = {.kind = Form::Kind::none}}).height(30, 30), 3 * um, um);
@@ -84,7 +85,7 @@ TEST(Comparison, InTheTruthsPlaneKeepsAStep) {
     EXPECT_NEAR(kept.sq_true, 2 * um, 1e-9 * um);
     EXPECT_LT(kept.rms, 1e-9 * um);
     EXPECT_NEAR(compare(of_slope(0.03), of_slope(0)).sq_true, um, 1e-3 * um);
-    // What is no plane stays in the deviation.
+    // The two maps differ by a plane alone, which the truth's form takes off: no deviation is left.
     EXPECT_NEAR(deviation_map(of_slope(0.03), of_slope(0), as_true).height(3, 3), 0, 1e-9 * um);
 }
 
@@ -112,7 +113,8 @@ TEST(Comparison, OfFlatMapsHasNeitherCorrelationNorShift) {
 }
 
 TEST(Comparison, TakesThePointsThatAreOnBothSpheres) {
-    // Caps of the radii 0.1 and 0.05 mm; what lies beyond the smaller one is flat and belongs to neither parameter.
+    // The maps are caps of the radii 0.1 and 0.05 mm; points beyond the smaller one are flat and belong to neither
+    // parameter.
     const auto cap = [](double radius) {
         HeightMap map{.height = Grid<double>(121, 121), .x0 = -0.06, .y0 = -0.06, .pitch_x = um, .pitch_y = um};
         for (int row = 0; row < map.rows(); ++row)
@@ -129,7 +131,7 @@ TEST(Comparison, TakesThePointsThatAreOnBothSpheres) {
         EXPECT_EQ(std::isnan(pair.measured.height.values[k]), std::isnan(pair.truth.height.values[k]));
     const Deviation deviation = compare(measured, truth, sphere);
     EXPECT_LT(deviation.rms, 1e-9);
-    // A disc of the radius 50 points, within its edge of 314 points.
+    // The measured points are a disc of the radius 50 points, to within its edge of 314 points.
     EXPECT_NEAR(deviation.measured_share * 121 * 121, std::acos(-1) * 50 * 50, 314);
     EXPECT_GT(compare(measured, truth).rms, um); // the wrong twin: a plane leaves both caps
 }

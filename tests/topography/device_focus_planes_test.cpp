@@ -1,4 +1,4 @@
-// The evaluation of stacks in float: to the same bits on host and device, and right by the reference in double.
+// The evaluation of stacks in float has the same bits on host and device, and is right by the reference in double.
 #include "topography/device_focus_planes.hpp"
 #include "topography/topography.hpp"
 #include "vulkan/device.hpp"
@@ -21,7 +21,7 @@ using topography::Channels;
 constexpr int columns = 37, rows = 29, images = 24;
 constexpr double step = 0.001;
 
-// Texture whose contrast is a Gaussian along z about a height that varies over the image, with noise.
+// A stack whose texture's contrast is a Gaussian along z about a height that varies over the image, with noise.
 std::vector<Channels> stack(int channels) {
     std::mt19937 random(4);
     std::normal_distribution<double> normal;
@@ -52,12 +52,12 @@ topography::Topography evaluated(const std::vector<Channels>& stack, const topog
     return evaluator.finish(0, 0, 0.002);
 }
 
-// u = 2^-24. A value of a curve is a chain of at most 160 float operations without cancellation (means of at most 11
-// images and curves, masks of 25 pixels, two windows of 7 and their squares) on positive numbers, except that masks
-// subtract pixels of 1 that differ by 0.02 or more over a window: their differences have u / 0.02 = 50 u each, at
-// random. So a curve's values are right to 200 u = 1.2e-5. Around the maximum the curve bends by 1 / 3^2 a step^2, or
-// less where the averages widen it, some 1 / 15: a position, difference of values over twice the bend, is right
-// to 1.2e-5 * 15 = 2e-4 steps.
+// The bounds follow from u = 2^-24. A value of a curve is a chain of at most 160 float operations without cancellation
+// (means of at most 11 images and curves, masks of 25 pixels, two windows of 7 and their squares) on positive numbers,
+// except that masks subtract pixels of 1 that differ by 0.02 or more over a window: their differences have u / 0.02 =
+// 50 u each, at random. So a curve's values are right to 200 u = 1.2e-5. Around the maximum the curve bends by 1 / 3^2
+// a step^2, or less where the averages widen it, some 1 / 15: a position, difference of values over twice the bend, is
+// right to 1.2e-5 * 15 = 2e-4 steps.
 constexpr double value_bound = 1.2e-5, position_bound = 2e-4;
 
 void expect_near(const topography::Topography& host, const topography::Topography& device, const std::string& which) {
@@ -76,7 +76,7 @@ void expect_near(const topography::Topography& host, const topography::Topograph
         ++compared;
         EXPECT_NEAR(b / step, a / step, position_bound) << which;
         EXPECT_NEAR(device.fit_residual.values[k], host.fit_residual.values[k], 2 * value_bound) << which;
-        // Linear between two images that differ by less than themselves.
+        // The value is linear between two images that differ by less than themselves.
         for (std::size_t channel = 0; channel < host.all_in_focus.size(); ++channel)
             EXPECT_NEAR(device.all_in_focus[channel].values[k] / host.all_in_focus[channel].values[k], 1,
                         position_bound)
@@ -90,7 +90,7 @@ void expect_near(const topography::Topography& host, const topography::Topograph
     EXPECT_LE(other_image, 2) << which; // of 1073
 }
 
-// Bit by bit; what is not a number is alike too.
+// Compares numbers bit by bit; values that are not a number are alike too.
 template <class Number>
 void expect_bits(const Grid<Number>& a, const Grid<Number>& b, const std::string& which) {
     ASSERT_EQ(a.values.size(), b.values.size());
@@ -110,7 +110,7 @@ void expect_bits(const Topography& a, const Topography& b, const std::string& wh
     EXPECT_EQ(a.curves.values, b.curves.values) << which;
 }
 
-// Host and device alike, and both near the reference.
+// Expects that host and device are alike, and that both are near the reference.
 void expect_alike(const std::vector<Channels>& images, const TopographyOptions& options, const std::string& which) {
     const auto host = evaluated(images, options, make_host_focus_planes);
     expect_bits(host, evaluated(images, options, device_focus_planes(std::make_shared<const vulkan::Device>())), which);
@@ -140,7 +140,7 @@ TEST(DeviceFocusPlanes, GiveTheHostsBitsOfColourAndWithAGaussianWindow) {
     }
 }
 
-// In units in the last place of float, 2^-23 of the number to 2^-24.
+// Errors are in units in the last place of float, 2^-23 of the number to 2^-24.
 TEST(FocusArithmetic, IsNearlyAsGoodAsFloatsOwn) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> exponent(-99, 99), small(-86, 1);
@@ -168,7 +168,7 @@ TEST(FocusArithmetic, IsNearlyAsGoodAsFloatsOwn) {
     EXPECT_EQ(focus::f32::natural_log(1), 0);
 }
 
-// The wrong twin: another method is told apart.
+// The wrong twin is another method, which is told apart.
 TEST(DeviceFocusPlanes, TheBoundTellsMethodsApart) {
     const auto grey = stack(1);
     const auto a =

@@ -31,7 +31,7 @@ double long_wave(int column) {
     return amplitude * std::cos(2 * pi * (column - points / 2) * spacing / period);
 }
 
-// Tilted, with a wave that no polynomial follows and a texture of two points.
+// A tilted flat with a wave that no polynomial follows and a texture of two points.
 surface::HeightMap wavy_flat() {
     return flat_of([](int column, int row) {
         return 0.5 + 1e-4 * column - 2e-4 * row + long_wave(column) + (column % 2 == 0 ? texture : -texture);
@@ -39,14 +39,14 @@ surface::HeightMap wavy_flat() {
 }
 
 TEST(Flatness, IsTheMaximumHeightOfTheLevelledFilteredFlat) {
-    // Even about the middle, so that no plane takes of it; its extremes stand a window inside the borders. 2^-(L /
-    // period)^2 of a wave passes; of a texture of two points 2^-25 at least.
+    // The wave is even about the middle, so that no plane takes of it; its extremes stand a window inside the borders.
+    // 2^-(L / period)^2 of a wave passes; of a texture of two points 2^-25 at least.
     for (const double index : {0.02, 0.04}) {
         const double kept = std::exp2(-std::pow(index / period, 2));
         EXPECT_NEAR(flatness_deviation(wavy_flat(), index), 2 * amplitude * kept, 0.01 * amplitude) << index;
     }
     EXPECT_NEAR(flatness_deviation(wavy_flat(), 0), 2 * (amplitude + texture), 0.01 * amplitude);
-    // The wrong twin: the polynomial that the correction takes off has the tilt in it.
+    // The wrong twin is the polynomial that the correction takes off: it has the tilt in it.
     const auto corrected = correct_flatness(flat_of([](int, int) { return 0.0; }), wavy_flat());
     EXPECT_GT(corrected.polynomial_peak_to_valley, 10 * flatness_deviation(wavy_flat(), 0.02));
 }
@@ -78,7 +78,7 @@ TEST(Flatness, CorrectionTellsWhatItTookOff) {
     EXPECT_THROW(correct_flatness(measured, surface::HeightMap{}), std::invalid_argument);
 }
 
-// Of a tilted field its deviation from the mean over the measured points alone, by squares.
+// A tilted field adds its deviation from the mean over the measured points alone to the uncertainty, by squares.
 TEST(Flatness, CurvatureThatStaysAddsToTheUncertainty) {
     auto heights = flat_of([](int, int) { return 7.0; });
     for (int row = 0; row < points; ++row) {

@@ -1,4 +1,4 @@
-// The focus curves that are kept for people: those by which the heights are found.
+// The focus curves that are kept for people are those by which the heights are found.
 #include "topography/topography.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using testing::ElementsAre;
 constexpr int curve_columns = 23, curve_rows = 17, curve_images = 21;
 constexpr double curve_step = 0.0015;
 
-// Texture that is in focus at a height which grows along x.
+// A stack of texture that is in focus at a height which grows along x.
 std::vector<Grid<float>> tilted_stack() {
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
@@ -97,7 +97,8 @@ TEST(FocusCurves, HaveThePeaksThatTheHeightsAre) {
                     EXPECT_EQ(fit.range, 0);
                     continue;
                 }
-                // Where the fit has its maximum. It comes of float values, the peak of the same in double.
+                // The fit has its maximum at this place. The fit is made of float values, and the peak of the same
+                // values in double.
                 const auto& [c0, c1, c2] = fit.coefficients;
                 EXPECT_NEAR(fit.at - c1 / (2 * c2), height / curve_step, 1e-9);
                 if (method == PeakMethod::gaussian) { // through three values

@@ -38,7 +38,7 @@ TEST(HeightTransfer, OfAGaussianLowPassIsThatLowPass) {
     int compared = 0;
     for (const TransferBand& band : bands)
         if (band.frequency < 0.95 * highest) {
-            // Power of the waves within two lines of the ring tells of the transfer there: its slope is at most
+            // The power of the waves within two lines of the ring tells of the transfer there: its slope is at most
             // 1.01 cut_off (at 0.85 / cut_off), over two lines and a half of 1 / 0.36 mm.
             EXPECT_NEAR(band.transfer, gaussian(cut_off)(band.frequency), 1.01 * cut_off * 2.5 / 0.36)
                 << band.frequency;
@@ -76,7 +76,8 @@ TEST(HeightTransfer, ErrsAsItSaysUnderNoise) {
         }
     }
     ASSERT_GT(counted, 60);
-    // Each a squared standard normal; neighbouring rings share a window's width, so half as many are independent.
+    // The sum is of squared standard normal values; neighbouring rings share a window's width, so half as many are
+    // independent.
     EXPECT_GT(vkfv::test::chi_square_tail(right / 2, counted / 2), 1e-3);
     EXPECT_LT(vkfv::test::chi_square_tail(right / 2, counted / 2), 1 - 1e-3);
     EXPECT_LT(vkfv::test::chi_square_tail(wrong / 2, counted / 2), 1e-3);
@@ -85,7 +86,7 @@ TEST(HeightTransfer, ErrsAsItSaysUnderNoise) {
 }
 
 TEST(HeightTransfer, LosesToALateralShift) {
-    // Waves along x alone, 12 lines apart so that no window mixes them: cos(2 pi f shift) of each is left.
+    // Waves run along x alone, 12 lines apart so that no window mixes them: cos(2 pi f shift) of each is left.
     const double line = 1 / (columns * pitch), shift = 1.5 * pitch;
     std::vector<Wave> waves;
     for (int k = 1; k <= 6; ++k)

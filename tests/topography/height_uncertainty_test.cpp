@@ -1,4 +1,5 @@
-// The uncertainty that heights tell of themselves: against windows of known errors, slopes, gaps and steps.
+// The uncertainty that heights tell of themselves agrees with windows of known errors, on slopes, beside gaps and at
+// steps.
 #include "topography/uncertainty/height_uncertainty.hpp"
 
 #include "topography/compare.hpp"
@@ -58,8 +59,8 @@ double root_mean_square(const Grid<double>& grid, int border = 0) {
 }
 
 TEST(HeightUncertainty, TheShareIsThatOfTheDefinition) {
-    // The surface of second degree over a square, at its middle, by Legendre's polynomials of u and v from -1 to 1:
-    // m = (1 - 5/2 (P2(u) + P2(v))) / 4, of which the sums over 61 points are off by a step's share.
+    // The truth is the surface of second degree over a square, at its middle, by Legendre's polynomials of u and v from
+    // -1 to 1: m = (1 - 5/2 (P2(u) + P2(v))) / 4, of which the sums over 61 points are off by a step's share.
     const auto window = FocusWindow(61, WindowShape::box), reference = reference_window(61, WindowShape::box);
     const int inner = window.radius(), outer = reference.radius(), reach = inner + outer;
     const auto legendre = [&](int d) {
@@ -106,7 +107,8 @@ TEST(HeightUncertainty, IsTheErrorOfWindowsWhosePixelsErrAlone) {
     }
 }
 
-// Pixels' errors are means of 3 x 3 independent ones, of variance 1: neighbours share two thirds, those two apart one.
+// Pixels' errors are means of 3 x 3 independent ones, of variance 1: neighbours share two thirds, pixels two apart one
+// third.
 TEST(HeightUncertainty, KnowsOfErrorsThatNeighboursHaveInCommon) {
     constexpr int side = 160, width = 7;
     const FocusWindow window(width, WindowShape::box), grain(3, WindowShape::box);
@@ -126,15 +128,15 @@ TEST(HeightUncertainty, KnowsOfErrorsThatNeighboursHaveInCommon) {
             grains(x + 2, y + 2) = (1 - std::abs(x) / 3.0) * (1 - std::abs(y) / 3.0);
         }
     }
-    // Along an axis: sum over d of (7 - |d|) (3 - |d|) / 3 / 49, which both axes have.
+    // The variance along an axis is the sum over d of (7 - |d|) (3 - |d|) / 3 / 49, and both axes have it.
     const double along = (7 + 2 * (6 * 2.0 + 5) / 3) / 49, error = along;
     const auto found = height_uncertainty(height, of(side, 0), width, WindowShape::box, grains);
     EXPECT_NEAR(root_mean_square(found, width) / error, 1, 0.05);
-    // The wrong twin: errors that each pixel has alone.
+    // The wrong twin has errors that each pixel has alone.
     const auto twin = height_uncertainty(height, of(side, 0), width, WindowShape::box);
     EXPECT_LT(root_mean_square(twin, width) / error, 0.75);
 
-    // Noise of independent pixels beside it, as large: its part is taken off first.
+    // Noise of independent pixels, as large, is added: its part is taken off first.
     const Grid<double> noise = windowed_errors(side, window, 6);
     Grid<double> both = height;
     for (std::size_t k = 0; k < both.values.size(); ++k) {
@@ -196,7 +198,7 @@ TEST(HeightUncertainty, LonelyHeightsHaveThatOfTheMap) {
     }
     const auto found = height_uncertainty(height, of(side, 0), 5, WindowShape::box);
     EXPECT_NEAR(found(60, 40) * 5, 1, 0.1);
-    // Nothing but a lonely one: its noise is all that is known.
+    // For a lonely height in an empty map its noise is all that is known.
     const auto alone = height_uncertainty(
         [&] {
             auto map = of(side, nothing);

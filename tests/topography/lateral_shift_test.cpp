@@ -22,7 +22,7 @@ double all(double) {
     return 1;
 }
 
-// Wavelengths of 6 to 40 pitches; with tilt, noise of a tenth of Sq, and a tenth of the points not measured.
+// A map of waves of 6 to 40 pitches, with tilt, noise of a tenth of Sq, and a tenth of the points not measured.
 HeightMap rough(double shift_x, double shift_y, unsigned seed) {
     auto map = map_of(random_waves(60, 1 / (40 * pitch), 1 / (6 * pitch), 1e-3, 1), 150, 120, pitch, shift_x * pitch,
                       shift_y * pitch, all);
@@ -47,7 +47,7 @@ TEST(LateralShift, IsFoundToAFiftiethOfAPitch) {
         EXPECT_NEAR(shift.x / pitch, x, 0.02);
         EXPECT_NEAR(shift.y / pitch, y, 0.02);
         EXPECT_GT(shift.correlation, 0.98);
-        // The wrong twin, the other sign.
+        // The wrong twin has the other sign.
         if (x != 0) {
             EXPECT_GT(std::abs(shift.x / pitch + x), 0.5);
         }
@@ -73,7 +73,7 @@ TEST(LateralShift, MovesTheTruthUnderTheMeasurement) {
 
 TEST(LateralShift, IsFoundOnAFinerTruth) {
     const auto waves = random_waves(60, 1 / (40 * pitch), 1 / (6 * pitch), 1e-3, 1);
-    // Three points a pitch, from a pitch before to beyond the measurement.
+    // The truth has three points a pitch, from a pitch before to beyond the measurement.
     HeightMap truth = map_of(waves, 456, 366, pitch / 3, pitch, pitch, all);
     truth.x0 -= pitch;
     truth.y0 -= pitch;
@@ -127,8 +127,8 @@ struct Pair {
     HeightMap measured, truth;
 };
 
-// Two maps of one surface, `shift_x` and `shift_y` points apart, 20 at most; the measured one with noise of
-// `noise`, and of either the share `gaps` of the points left out.
+// Two maps of one surface, `shift_x` and `shift_y` points apart, 20 at most; the measured one has noise of `noise`, and
+// of either the share `gaps` of the points is left out.
 Pair moved_pair(int points, double sigma, int shift_x, int shift_y, double noise, double gaps, unsigned seed) {
     const Grid<double> surface = smooth_noise(points + 40, points + 40, sigma, seed);
     std::mt19937_64 random(seed + 1000);
@@ -151,12 +151,12 @@ Pair moved_pair(int points, double sigma, int shift_x, int shift_y, double noise
 }
 
 TEST(LateralShift, OfNothingIsFound) {
-    // The border is of the overlap or not with the sign of the shift.
+    // The sign of the shift decides whether the border belongs to the overlap.
     for (unsigned seed = 0; seed < 12; ++seed) {
         const Pair pair = moved_pair(100, 6, 0, 0, 0.02, 0, seed);
         const LateralShift shift = lateral_shift(pair.measured, pair.truth);
-        // Noise of 0.02 over a slope of 1 / (6 sqrt(2)) a point and 10^4 points: 0.002 of a pitch; five of
-        // these.
+        // Noise of 0.02 over a slope of 1 / (6 sqrt(2)) a point and 10^4 points leaves 0.002 of a pitch; five of these
+        // are allowed.
         EXPECT_NEAR(shift.x / pitch, 0, 0.01) << seed;
         EXPECT_NEAR(shift.y / pitch / 1.7, 0, 0.01) << seed;
         EXPECT_GT(shift.correlation, 0.999) << seed;
@@ -164,7 +164,7 @@ TEST(LateralShift, OfNothingIsFound) {
 }
 
 TEST(LateralShift, OfSmoothSurfacesIsFound) {
-    // Hardly more than one hill in sight: the overlap's mean and its variance change with the lag.
+    // Hardly more than one hill is in sight: the overlap's mean and its variance change with the lag.
     struct Case {
         int points;
         double sigma;
@@ -176,8 +176,8 @@ TEST(LateralShift, OfSmoothSurfacesIsFound) {
         for (unsigned seed = 0; seed < 6; ++seed) {
             const Pair pair = moved_pair(c.points, c.sigma, c.x, c.y, 0.02, c.gaps, seed);
             const LateralShift shift = lateral_shift(pair.measured, pair.truth);
-            // Noise of 0.02 over a slope of 1 / (15 sqrt(2)) a point and 6000 points: 0.006 of a pitch;
-            // offset and tilt take some of it.
+            // Noise of 0.02 over a slope of 1 / (15 sqrt(2)) a point and 6000 points leaves 0.006 of a pitch; offset
+            // and tilt take some of it.
             EXPECT_NEAR(shift.x / pitch, c.x, 0.05) << c.points << ' ' << c.sigma << ' ' << seed;
             EXPECT_NEAR(shift.y / pitch / 1.7, c.y, 0.05) << c.points << ' ' << c.sigma << ' ' << seed;
         }
@@ -192,7 +192,7 @@ TEST(LateralShift, OfUnrelatedSurfacesIsNotFound) {
             found += !std::isnan(lateral_shift(one.measured, other.truth).x);
         }
     EXPECT_EQ(found, 0);
-    // Of planes rounding alone is left.
+    // Levelled planes leave rounding alone, which has no shift.
     Pair planes = moved_pair(60, 3, 0, 0, 0.02, 0, 1);
     for (int row = 0; row < 60; ++row)
         for (int column = 0; column < 60; ++column) {

@@ -37,7 +37,7 @@ inline Grid<double> texture_of(std::mt19937& random) {
     return result;
 }
 
-// width: standard deviation of the focus curves in steps.
+// A stack whose focus curves have the standard deviation `width` in steps; `bytes` rounds its values to whole numbers.
 inline ModelStack model_stack(int images, double width, bool bytes, unsigned seed) {
     std::mt19937 random(seed);
     const Grid<double> texture = texture_of(random);

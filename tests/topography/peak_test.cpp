@@ -21,7 +21,7 @@ struct Curve {
     double alone_value(int image) const { return curve_value(image); }
 };
 
-// f(-range) ... f(range), the maximum at the image `range`.
+// The samples f(-range) ... f(range) of a curve with its maximum at the image `range`.
 Curve sampled(const std::function<double(double)>& f, int range) {
     Curve curve;
     for (int x = -range; x <= range; ++x)
@@ -64,19 +64,19 @@ TEST(Peak, ThreePointAndFittedGaussiansAreExactForAGaussianAnywhereBetweenSteps)
 TEST(Peak, ParabolasAreExactForAParabola) {
     for (double centre = -0.5; centre <= 0.5; centre += 0.0625) {
         const auto parabola = [=](double z) { return 50 - std::pow(z - centre, 2); };
-        // Values of 50 to 1e-14, a curvature of 2.
+        // Values of 50 are right to 1e-14, and the curvature is 2.
         EXPECT_NEAR(located(PEAK_PARABOLA, sampled(parabola, 1), 1), centre, 1e-14);
         for (const int range : {1, 3, 6})
             EXPECT_NEAR(located(PEAK_POLYNOMIAL_FIT, sampled(parabola, range), range), centre, 1e-13);
     }
-    // The wrong twin.
+    // The wrong twin is the fit of a Gaussian.
     const auto parabola = [](double z) { return 50 - std::pow(z - 0.3, 2); };
     EXPECT_GT(std::abs(located(PEAK_GAUSSIAN, sampled(parabola, 1), 1) - 0.3), 1e-4);
 }
 
 TEST(Peak, APolynomialFitIsThatOfTheNormalEquations) {
-    // Over -R..R with S2 = sum x^2, S4 = sum x^4, n = 2 R + 1: the slope at the middle is sum x y / S2, and half the
-    // curvature (n sum x^2 y - S2 sum y) / (n S4 - S2^2).
+    // The normal equations over -R..R with S2 = sum x^2, S4 = sum x^4, n = 2 R + 1 give the slope at the middle, sum x
+    // y / S2, and half the curvature, (n sum x^2 y - S2 sum y) / (n S4 - S2^2).
     std::mt19937 random(5);
     std::normal_distribution<double> normal(0, 0.05);
     for (const int range : {2, 5}) {
@@ -95,12 +95,13 @@ TEST(Peak, TheCentreOfGravityIsThatOfWhatStandsAboveTheSmallestValue) {
     // A triangle of height 4 and half width 4, shifted by a half, above a pedestal of 7: values 7 +
     // (0.5 1.5 2.5 3.5 3.5 2.5 1.5), of which the smallest falls away: (1*-2 + 2*-1 + 3*0 + 3*1 + 2*2 + 1*3) / 12.
     EXPECT_NEAR(located(PEAK_CENTRE_OF_GRAVITY, Curve{{7.5, 8.5, 9.5, 10.5, 10.5, 9.5, 8.5}}, 3), 6.0 / 12, 1e-15);
-    // Of a Gaussian whose feet are in the range: its centre, but for the tail cut off, exp(-0.5 (5.7/1.2)^2) = 1e-5.
+    // The centre of gravity of a Gaussian whose feet are in the range is its centre, but for the tail cut off, exp(-0.5
+    // (5.7/1.2)^2) = 1e-5.
     EXPECT_NEAR(located(PEAK_CENTRE_OF_GRAVITY, sampled(gaussian(0.3, 1.2), 6), 6), 0.3, 1e-3);
 }
 
 TEST(Peak, FitsHaveTheNoiseOfTheirClosedForms) {
-    // 4000 noisy Gaussians: each standard deviation is known to 1 / sqrt(8000) = 1.1 %.
+    // Each standard deviation of 4000 noisy Gaussians is known to 1 / sqrt(8000) = 1.1 %.
     std::mt19937 random(7);
     std::normal_distribution<double> normal(0, 0.02);
     const auto deviation = [&](int method) {
@@ -149,7 +150,7 @@ TEST(Peak, OutsideTheRangeThereIsNone) {
     EXPECT_EQ(fit.found, 0);
     EXPECT_EQ(fit.offset, 0);
     EXPECT_EQ(follow_curve(curve, plan, empty_curve(), 3, 7).place, 3);
-    // The wrong twin: the parabola does have a maximum.
+    // The wrong twin, the parabola, does have a maximum.
     const ParabolaFit parabola = fit_parabola(curve, 3, 3, 0);
     EXPECT_LT(parabola.bend, 0);
     EXPECT_GT((parabola.middle_1 + parabola.middle_2) / 2 - parabola.slope / (2 * parabola.bend), 3);

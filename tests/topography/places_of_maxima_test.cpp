@@ -19,8 +19,8 @@ struct Averaged {
     double curvature; // of its logarithm there, by three values
 };
 
-// A Gaussian about `place`, averaged as single images and as a curve by the shares that the evaluation uses; the other
-// program of the test.
+// Averages a Gaussian about `place` as single images and as a curve, by the shares that the evaluation uses: this is
+// the truth of the test.
 Averaged averaged(double place, double width, const std::vector<double>& weights, int images) {
     std::vector<double> curve;
     for (int k = 0; k < images; ++k)
@@ -58,7 +58,8 @@ struct Stack {
     double smoothing, width; // in steps
 };
 
-// Of a curve as wide as the stack's, and of one a quarter wider: its place, and how far off a straight line puts it.
+// The places are found of curves as wide as the stack's and of curves a quarter wider. The wrong twin is a straight
+// line through the images' places.
 TEST(PlacesOfMaxima, AreThoseOfTheCurvesNearBothEnds) {
     for (const Stack stack :
          {Stack{10, 0.66, 1}, Stack{21, 2, 3}, Stack{31, 3, 4}, Stack{60, 2, 3}, Stack{101, 4, 6}}) {
@@ -100,7 +101,7 @@ TEST(PlacesOfMaxima, AreThePointsAwayFromTheEndsAndMirrorImages) {
     }
 }
 
-// Curves of half to twice the stack's width, whose width only the curve tells.
+// Curves are half to twice as wide as the stack's, and only the curve tells its width.
 TEST(PlacesByWidth, AreThoseOfEveryCurveByItsOwnWidth) {
     for (const Stack stack : {Stack{21, 1, 1.5}, Stack{31, 2, 2.5}, Stack{60, 2, 3}, Stack{101, 4, 6}}) {
         const auto weights = axial_weights(stack.smoothing);

@@ -21,12 +21,12 @@ class Pattern {
             waves_.push_back({frequency * std::cos(direction), frequency * std::sin(direction), uniform(random)});
         }
     }
-    // Shifted and scaled about its middle.
+    // The pattern shifted, and scaled about its middle.
     Grid<float> drawn(int columns, int rows, const ImageTransform& transform) const {
         Grid<float> image(columns, rows);
         for (int row = 0; row < rows; ++row) {
             for (int column = 0; column < columns; ++column) {
-                // Where the point of the reference stands that is seen here.
+                // The point of the reference that is seen here stands at these coordinates.
                 const double x = (column - 0.5 * (columns - 1) - transform.shift_x) / transform.scale;
                 const double y = (row - 0.5 * (rows - 1) - transform.shift_y) / transform.scale;
                 double sum = 0;
@@ -69,7 +69,7 @@ TEST(Registration, FindsAScale) {
         EXPECT_NEAR(found.shift_x, given.shift_x, 0.1);
         EXPECT_NEAR(found.shift_y, given.shift_y, 0.1);
         EXPECT_NEAR(found.scale, scale, 0.0006);
-        // The wrong twin: the inverse is another transform.
+        // The wrong twin is the inverse, another transform.
         EXPECT_GT(std::abs(found.shift_x - given.inverse().shift_x), 1);
     }
 }

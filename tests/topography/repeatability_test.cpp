@@ -13,7 +13,8 @@ namespace {
 
 using surface::HeightMap;
 
-// Bias of the root mean square 1e-4 mm, noise as given, a tenth of the points of each repetition not measured.
+// Repeated maps with a bias of root mean square 1e-4 mm, noise as given, and a tenth of the points of each not
+// measured.
 std::vector<HeightMap> repetitions(int count, double sigma, unsigned seed) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal(0, sigma);
@@ -36,27 +37,28 @@ TEST(Repeatability, ToldApartWithoutBias) {
     const double bias = 1e-4, sigma = 3e-4;
     for (const int n : {2, 10}) {
         const SystematicAndRandom parts = systematic_and_random(repetitions(n, sigma, 21));
-        // About 0.9 n measurements a point; of the mean square of 8000 (with n = 2: 6480) points the noise's share is
-        // sigma^2 / (0.9 n), its standard error that times sqrt(2 / points), twice as much with its own estimate at
-        // n = 2, and of the product with the bias 2 bias sigma / sqrt(0.9 n points). Over 2 bias; five of them.
+        // A point has about 0.9 n measurements; of the mean square of 8000 (with n = 2: 6480) points the noise's share
+        // is sigma^2 / (0.9 n), its standard error that times sqrt(2 / points), twice as much with its own estimate at
+        // n = 2, and of the product with the bias 2 bias sigma / sqrt(0.9 n points). These are divided by 2 bias, and
+        // five of them are allowed.
         const double points = n == 2 ? 6480 : 8000, noise = sigma * sigma / (0.9 * n);
         const double error = (2 * noise * std::sqrt(2 / points) + 2 * bias * std::sqrt(noise / points)) / (2 * bias);
         EXPECT_NEAR(parts.systematic, bias, 5 * error);
-        // The wrong twin: the mean's own scatter left in.
+        // The wrong twin leaves the mean's own scatter in.
         if (n == 10) {
             EXPECT_GT(std::abs(parts.systematic - std::sqrt(bias * bias + noise)), 5 * error);
         }
         const double freedoms = points * (n == 2 ? 1 : 8);
         EXPECT_NEAR(parts.random, sigma, 5 * sigma / std::sqrt(2 * freedoms));
-        // The wrong twin: n instead of n - 1.
+        // The wrong twin divides by n instead of n - 1.
         EXPECT_GT(std::abs(parts.random - sigma * std::sqrt(1 - 1.0 / n)), 5 * sigma / std::sqrt(2 * freedoms));
         EXPECT_NEAR(parts.points, points, 0.05 * points);
     }
 }
 
 TEST(Repeatability, KnowsItsErrors) {
-    // Over 200 draws of 6 repetitions: the mean squared error that is said against that which is seen. Each of the
-    // two is known to 10 % from 200 squares (of a chi-square of 1 and of 5 degrees: sqrt(2 / 200), sqrt(2 / 1000)).
+    // Over 200 draws of 6 repetitions the mean squared error that is said is compared with that which is seen. Each of
+    // the two is known to 10 % from 200 squares (of a chi-square of 1 and of 5 degrees: sqrt(2 / 200), sqrt(2 / 1000)).
     double systematic_seen = 0, systematic_said = 0, random_seen = 0, random_said = 0;
     const int draws = 200;
     for (int draw = 0; draw < draws; ++draw) {
@@ -80,7 +82,8 @@ TEST(Repeatability, KnowsItsErrors) {
         systematic_said += std::pow(parts.systematic_error, 2);
         random_said += std::pow(parts.random_error, 2);
     }
-    // Four standard deviations of a ratio known to 11 %, and the jackknife's own bias, at most 1 / 6 upwards.
+    // The bounds are four standard deviations of a ratio known to 11 %, and the jackknife's own bias, at most 1 / 6
+    // upwards.
     EXPECT_GT(systematic_said / systematic_seen, 0.56);
     EXPECT_LT(systematic_said / systematic_seen, 1.44 * 7 / 6);
     EXPECT_GT(random_said / random_seen, 0.56);

@@ -31,7 +31,8 @@ HeightMap over_angles(const Function& height) {
 
 TEST(SlopeDeviation, OfASphereIsBinnedByItsAngle) {
     const HeightMap truth = over_angles([](double angle) { return radius * std::cos(angle); });
-    // Deviation in mm as the angle in radians; steeper than 40 degrees nothing is measured, and of 30 to 40 half.
+    // The deviation in mm is the angle in radians; steeper than 40 degrees nothing is measured, and of 30 to 40 degrees
+    // half.
     int parity = 0;
     const HeightMap deviation = over_angles([&](double angle) {
         const double degrees = angle / radians_per_degree;
@@ -44,14 +45,15 @@ TEST(SlopeDeviation, OfASphereIsBinnedByItsAngle) {
         const auto& bin = bins[static_cast<std::size_t>(k)];
         EXPECT_NEAR(bin.from, k * width, 1e-12);
         EXPECT_NEAR(bin.to, (k + 1) * width, 1e-12);
-        // Points: the ring's area. A ring of the radius r loses or gains some of the 2 pi r / pitch points on its
-        // rims: 2 % at the least ring's 3800 points by chance. Central differences bend the slope by
+        // The points are those of the ring's area. A ring of the radius r loses or gains some of the 2 pi r / pitch
+        // points on its rims: 2 % at the least ring's 3800 points by chance. Central differences bend the slope by
         // pitch^2 z''' / 6, at most 2e-4 here.
         const double area = pi * (std::pow(std::sin(bin.to), 2) - std::pow(std::sin(bin.from), 2));
         EXPECT_NEAR(bin.points, area / (0.005 * 0.005), 0.02 * bin.points);
         EXPECT_NEAR(bin.measured_share, k < 3 ? 1 : k == 3 ? 0.5 : 0, 0.02);
         if (k < 4) {
-            // Mean angle over the ring: the integral of angle sin cos over that of sin cos; and its square's.
+            // The mean angle over the ring is the integral of angle sin cos over that of sin cos, and that of its
+            // square likewise.
             double weight = 0, sum = 0, squares = 0;
             for (int i = 0; i < 1000; ++i) {
                 const double angle = bin.from + width * (i + 0.5) / 1000, w = std::sin(angle) * std::cos(angle);

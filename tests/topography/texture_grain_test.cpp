@@ -1,4 +1,4 @@
-// How far grains reach, of texture whose correlation is known.
+// The reach of grains is found of texture whose correlation is known.
 #include "topography/uncertainty/texture_grain.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace vkfv::topography {
 namespace {
 
-// Means over `width` x `width` independent values about 1000.
+// A texture of means over `width` x `width` independent values about 1000.
 Grid<float> texture(int side, int width) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal(1000, 10);

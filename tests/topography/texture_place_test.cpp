@@ -1,4 +1,5 @@
-// Heights on slopes, of windows whose texture lies to one side: synthetic heights and images, and the closed form.
+// On slopes, the heights of windows whose texture lies to one side are carried to its place: synthetic heights and
+// images, and the closed form.
 #include "topography/texture_place.hpp"
 
 #include "topography/topography.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-// Texture in a single column alone: every window that reaches it has its centre there.
+// A scene with texture in a single column: every window that reaches it has its centre there.
 struct OneLine {
     static constexpr int side = 31, line = 15;
     static constexpr double slope_x = 0.2, slope_y = -0.1;
@@ -109,7 +110,7 @@ TEST(TexturePlace, GapsStayAndFewHeightsHaveNoSlope) {
                  std::invalid_argument);
 }
 
-// A tilted plane with texture of very unlike strength, in focus within a Gaussian along z.
+// The error on a tilted plane with texture of very unlike strength, in focus within a Gaussian along z.
 double error_on_a_ramp(bool placed) {
     std::mt19937 random(2);
     std::normal_distribution<double> normal;

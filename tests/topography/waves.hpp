@@ -15,7 +15,7 @@ struct Wave {
     double frequency() const { return std::hypot(frequency_x, frequency_y); }
 };
 
-// Frequencies evenly over the disc's ring from `lowest` to `highest`, 1/mm.
+// Waves with frequencies evenly over the disc's ring from `lowest` to `highest`, 1/mm.
 inline std::vector<Wave> random_waves(int count, double lowest, double highest, double amplitude, unsigned seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> share;

@@ -1,4 +1,4 @@
-// Whether two images are one in expectation.
+// A test of whether two images are one in expectation.
 #pragma once
 
 #include "support/statistics.hpp"
@@ -14,8 +14,8 @@ inline double total(const Grid<double>& grid) {
     return std::accumulate(grid.values.begin(), grid.values.end(), 0.0);
 }
 
-// p-value of one expectation in every pixel. The errors' squares are shared out as the light is, since that of one
-// pixel is known badly.
+// The p-value that all pixels have one expectation. The errors' squares are shared out as the light is, since that of
+// one pixel is known badly.
 inline double agreement(const trace::Image& one, const trace::Image& other) {
     const auto variance_per_flux = [](const trace::Image& image) {
         double squares = 0;

@@ -1,4 +1,4 @@
-// The ends of the same paths by the host in double and by the device in float.
+// Compares the ends of paths by the host in double with those by the device in float.
 #pragma once
 
 #include "trace/host/host_tracer.hpp"

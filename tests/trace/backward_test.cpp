@@ -1,4 +1,4 @@
-// The backward estimator against the forward one, which is the arbiter, and what it promises of itself.
+// The backward estimator agrees with the forward one, which is the arbiter, and keeps what it promises of itself.
 #include "trace/device/device_tracer.hpp"
 #include "trace/host/host_tracer.hpp"
 #include "trace/interface/backward_image.hpp"
@@ -38,7 +38,7 @@ optics::InstrumentDescription small_description() {
     return small(test::microscope_description());
 }
 
-// For what does not depend on the lenses.
+// A microscope of ideal lenses, for tests that do not depend on the lenses.
 optics::InstrumentDescription ideal_description() {
     return small(test::ideal_microscope_description());
 }
@@ -68,16 +68,16 @@ trace::Image backward_image(const optics::Instrument& instrument, const specimen
         ->expose(focal_height, image);
 }
 
-// So many rays that forward's noise, whose distribution is known, is the larger one in what is compared.
+// The rays are so many that forward's noise, whose distribution is known, is the larger one in what is compared.
 trace::Image forward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen, int max_bounces,
                            std::uint64_t rays = 1'200'000) {
     return trace::make_device_tracer(instrument, specimen, options(trace::Estimator::forward, rays, max_bounces))
         ->expose(focal_height, 0);
 }
 
-// Probability of a greater sum over the pixels of (difference)^2 / variance. Forward counts are Poisson's about the
-// expectation, which backward knows better; backward's own variances have one degree of freedom a pixel, so what is
-// used is their sum over the field, shared out as the light is.
+// The probability of a greater sum over the pixels of (difference)^2 / variance. Forward counts are Poisson's about the
+// expectation, which backward knows better; backward's own variances have one degree of freedom a pixel, so their sum
+// over the field is used, shared out as the light is.
 double agreement(const trace::Image& forward, const trace::Image& backward) {
     const auto pixels = forward.flux.values.size();
     const auto total = [](const Grid<double>& grid) {
@@ -117,7 +117,7 @@ specimen::Specimen with_material(specimen::Specimen specimen, const specimen::Ma
 
 } // namespace
 
-// One scatter event and up to four, on facets so steep that light meets them again.
+// The images agree for a single scatter event, and for up to four on facets so steep that light meets them again.
 TEST(Backward, EstimatesTheImageThatForwardDoes) {
     const auto instrument = optics::assemble(small_description());
     const auto rough = test::rough_specimen();
@@ -126,7 +126,7 @@ TEST(Backward, EstimatesTheImageThatForwardDoes) {
     expect_agreement(forward_image(instrument, steep, 4), backward_image(instrument, steep, 4));
 }
 
-// Wrong twins: a slightly sharper lobe, and a bounce too few, are told apart.
+// The wrong twins, a slightly sharper lobe and a bounce too few, are told apart.
 TEST(Backward, AnotherSpecimenDoesNotPass) {
     const auto instrument = optics::assemble(ideal_description());
     const auto rough = test::rough_specimen(0.65);
@@ -136,9 +136,9 @@ TEST(Backward, AnotherSpecimenDoesNotPass) {
     EXPECT_LT(agreement(forward_image(instrument, steep, 4), backward_image(instrument, steep, 3)), level);
 }
 
-// What the source shows for sure is looked at apart from its rim: the same image. How much less noise that is depends
-// on the specimen; here it is no more, as it would be if the rim's directions were a poor lattice: ten times the
-// variance.
+// The part of the aperture that shows the source for sure is sampled apart from the source's rim, and the image is the
+// same. How much less noise that is depends on the specimen; here it is no more. If the rim's directions were a poor
+// lattice, the variance would be ten times as large.
 TEST(Backward, TellsTheRimOfTheSourceApart) {
     auto description = small_description();
     description.field_stop_radius = 0.3; // so that all of the detector sees the source's middle for sure
@@ -154,7 +154,7 @@ TEST(Backward, TellsTheRimOfTheSourceApart) {
     EXPECT_LT(variance(apart), 1.5 * variance(backward_image(as_one, rough, 1)));
     const auto forward = forward_image(instrument, rough, 1, 2'400'000);
     expect_agreement(forward, apart);
-    // Wrong twin: more is taken for sure than is.
+    // In the wrong twin more of the source is taken for sure than is.
     auto too_sure = instrument;
     too_sure.turned->optics.source_inner *= 1.2;
     EXPECT_LT(agreement(forward, backward_image(too_sure, rough, 1)), level);
@@ -169,16 +169,17 @@ TEST(Backward, KnowsEveryMaterial) {
          {mixture, specimen::Material::henyey_greenstein(1), specimen::Material::henyey_greenstein(-0.4),
           specimen::Material::henyey_greenstein(0.97)}) {
         const auto specimen = with_material(rough, material);
-        // Of a mirror among other lobes backward's own noise would be half of forward's.
+        // With a mirror among other lobes backward's own noise would be half of forward's; twice as many paths make it
+        // less.
         expect_agreement(forward_image(instrument, specimen, 2), backward_image(instrument, specimen, 2, 1 << 20));
     }
-    // One event alone takes fewer numbers, but the lobe is still chosen.
+    // A single event takes fewer random numbers, but the lobe is still chosen.
     const specimen::Material sharp_and_wide{{{"henyey-greenstein", 0.5, {0.3}}, {"henyey-greenstein", 0.4, {0.95}}}};
     const auto specimen = with_material(rough, sharp_and_wide);
     expect_agreement(forward_image(instrument, specimen, 1), backward_image(instrument, specimen, 1));
 }
 
-// GGX loses light at each event, and not the same backward: with the lobe as wide as the source's cone, sharper, and
+// GGX loses light at each event, and other light backward: with the lobe as wide as the source's cone, sharper, and
 // much wider, on facets that light meets again.
 TEST(Backward, KnowsWhatALossyLobeAbsorbs) {
     const auto instrument = optics::assemble(ideal_description());
@@ -196,7 +197,7 @@ TEST(Backward, KnowsWhatALossyLobeAbsorbs) {
     expect_agreement(forward_image(instrument, steep, 4, 2'400'000), backward_image(instrument, steep, 4));
 }
 
-// Losses at interfaces, a spectrum, parts that stand askew, a cube: whatever makes the trains differ.
+// The trains of both ways differ by losses at interfaces, a spectrum, parts that stand askew, or a cube.
 TEST(Backward, KnowsEveryInstrument) {
     const auto rough = test::rough_specimen();
     auto lossy = small_description();
@@ -229,7 +230,7 @@ TEST(Backward, EveryTraversalGivesTheSameImage) {
         with.traversal = traversal;
         images.push_back(trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 1));
     }
-    // The same paths: what differs are those within rounding of an edge, which is fewer than 1 in 1000.
+    // All traversals trace the same paths: only those within rounding of an edge differ, fewer than 1 in 1000.
     const auto& first = images.front().flux.values;
     const double total = std::accumulate(first.begin(), first.end(), 0.0);
     for (const auto& image : images) {
@@ -241,8 +242,8 @@ TEST(Backward, EveryTraversalGivesTheSameImage) {
     }
 }
 
-// In double and in float: the same points, so the same values but for paths within rounding of an edge, and of the
-// choice between two candidates.
+// In double and in float the points are the same, so the values are the same but for paths within rounding of an edge,
+// and of the choice between two candidates.
 TEST(Backward, HostAndDeviceFollowTheSamePaths) {
     const auto instrument = optics::assemble(small_description());
     const auto specimen = test::steep_specimen(0.65);
@@ -256,7 +257,7 @@ TEST(Backward, HostAndDeviceFollowTheSamePaths) {
         difference += std::abs(device.flux.values[pixel] - host.flux.values[pixel]);
     }
     EXPECT_LT(difference, 5e-3 * total);
-    // Other points: the wrong twin.
+    // The wrong twin has other points.
     const auto other = trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 2);
     double apart = 0;
     for (std::size_t pixel = 0; pixel < host.flux.values.size(); ++pixel) {
@@ -265,7 +266,7 @@ TEST(Backward, HostAndDeviceFollowTheSamePaths) {
     EXPECT_GT(apart, 5e-3 * total);
 }
 
-// More paths than two of the largest lattices have.
+// There are more paths than two of the largest lattices have.
 TEST(Backward, HostAndDeviceFollowTheSamePathsOfThreeRandomisations) {
     auto description = small_description();
     description.detector_pixels = {2, 1};
@@ -318,8 +319,8 @@ TEST(Backward, StatesItsStandardError) {
     EXPECT_NEAR(stated / seen, 1.0, 5 * std::sqrt(2.0 / 256 * (1.0 / 15 + 1)));
 }
 
-// What the gates promise, for each microscope of the library, in double: all light within the inner one is from the
-// source, none outside the outer one.
+// The gates keep their promise for each microscope of the library, in double: all light within the inner one is from
+// the source, none outside the outer one.
 TEST(Backward, GatesHoldForEveryMicroscope) {
     for (const char* objective : objectives) {
         SCOPED_TRACE(objective);
@@ -361,7 +362,7 @@ TEST(Backward, GatesHoldForEveryMicroscope) {
     }
 }
 
-// So that a stack is not continued by a program that draws others.
+// A stack must not be continued by a program that draws other paths.
 TEST(Backward, IdentityKnowsWhatPathsAreDrawnBy) {
     const auto instrument = optics::assemble(small_description());
     auto other = instrument;
@@ -379,8 +380,8 @@ TEST(Backward, IdentityKnowsWhatPathsAreDrawnBy) {
     }
 }
 
-// Where the pupil ends in the disc that paths start from: after so many of a lattice's points for every shift. Between
-// two numbers, the wrong twin, it is one or the other.
+// The pupil ends, in the disc that paths start from, after so many of a lattice's points for every shift. If it ended
+// between two numbers, as in the wrong twin, the number would vary.
 TEST(Backward, ThePupilsRimAddsNoNoise) {
     for (const char* objective : objectives) {
         SCOPED_TRACE(objective);
@@ -399,7 +400,8 @@ TEST(Backward, ThePupilsRimAddsNoNoise) {
         Exposure exposure{};
         exposure.top_distance = optics.object_distance;
         const Light light{.spectral = 0, .wave_number = 1 / 0.587562, .survival = 0};
-        // How many of 64 azimuths pass from the detector's corner, on a circle `times` the disc that holds all light.
+        // The number of 64 azimuths that pass from the detector's corner, on a circle `times` the disc that holds all
+        // light.
         const auto passing_at = [&](double times) {
             optics.pupil_radius = times * seen.optics.pupil_radius;
             int passing = 0;
@@ -415,7 +417,7 @@ TEST(Backward, ThePupilsRimAddsNoNoise) {
         EXPECT_EQ(passing_at(1), 0);
         EXPECT_EQ(passing_at(1.1), 0);
         EXPECT_EQ(passing_at(0.9), 64);
-        // Variance over pixels of the number of points that pass.
+        // The variance over pixels of the number of points that pass.
         const auto variance = [&](double radius) {
             optics.pupil_radius = radius;
             constexpr int pixels = 400;
@@ -436,15 +438,15 @@ TEST(Backward, ThePupilsRimAddsNoNoise) {
             }
             return squares / pixels - sum / pixels * (sum / pixels);
         };
-        // An edge at the share p between two points is a coin's throw, of the variance p (1 - p). 0.1 is a rim 0.11
-        // points off, 0.9e-3 of its radius; 0.15, of the twin's half a point at most 0.32 off: 2.5e-3.
+        // An edge at the share p between two points is a coin's throw, of the variance p (1 - p). A variance of 0.1 is
+        // a rim 0.11 points off, 0.9e-3 of its radius; 0.15, of the twin's half a point at most 0.32 off: 2.5e-3.
         const double within = std::round(plan.points * std::pow(seen.pupil_rim / chosen, 2));
         EXPECT_LT(variance(chosen), 0.1);
         EXPECT_GT(variance(seen.pupil_rim * std::sqrt(plan.points / (within + 0.5))), 0.15);
     }
 }
 
-// An LED's die: narrower than the pupil one way, wider the other.
+// The source is an LED's die: narrower than the pupil one way, wider the other.
 TEST(Backward, KnowsARectangularSource) {
     auto description = ideal_description();
     description.source.rectangle = glm::dvec2(2.4, 0.9);
@@ -452,13 +454,14 @@ TEST(Backward, KnowsARectangularSource) {
     const auto instrument = optics::assemble(description);
     const auto forward = forward_image(instrument, rough, 1, 3'000'000);
     expect_agreement(forward, backward_image(instrument, rough, 1));
-    // Wrong twins: wider, so that more of the same flux passes beside the pupil, and with its sides exchanged.
+    // The wrong twins are a wider die, so that more of the same flux passes beside the pupil, and one with its sides
+    // exchanged.
     for (const glm::dvec2 sides : {glm::dvec2(2.54, 0.9), glm::dvec2(0.9, 2.4)}) {
         auto other = description;
         other.source.rectangle = sides;
         EXPECT_LT(agreement(forward, backward_image(optics::assemble(other), rough, 1)), level) << sides.x;
     }
-    // Of a die that the pupil sees whole, aiming loses nothing.
+    // Aiming loses nothing of a die that the pupil sees whole.
     auto small = description;
     small.source.rectangle = glm::dvec2(0.8, 0.5);
     auto whole = small;
@@ -473,8 +476,8 @@ TEST(Backward, KnowsARectangularSource) {
     EXPECT_GT(aimed.rays, 2 * analog.rays);
 }
 
-// Light from one side, past the objective: segments with gaps, wide and sharp lobes, mirrors, a spectrum, a cover
-// glass.
+// The light comes from one side, past the objective: segments with gaps, wide and sharp lobes, mirrors, a spectrum, a
+// cover glass.
 TEST(Backward, KnowsARingLight) {
     auto description = ideal_description();
     description.detector_width = 0.64;
@@ -490,7 +493,7 @@ TEST(Backward, KnowsARingLight) {
     const auto instrument = optics::assemble(description);
     const auto forward = forward_image(instrument, rough, 1, 12'000'000);
     expect_agreement(forward, backward_image(instrument, rough, 1));
-    // Wrong twins: a ring a little lower, and one whose gaps stand elsewhere.
+    // The wrong twins are a ring a little lower, and one whose gaps stand elsewhere.
     for (const bool lower : {true, false}) {
         auto other = description;
         other.source.ring->elevation -= lower ? 0.03 : 0;
@@ -514,7 +517,7 @@ TEST(Backward, KnowsARingLight) {
     EXPECT_LT(agreement(under_glass, backward_image(optics::assemble(description), blind, 1)), level);
 }
 
-// Points that are drawn on a wide band are met by the rays that go there, and gaps and what is beside the band are not.
+// Rays that go to points drawn on a wide band meet it there; rays to gaps and beside the band do not.
 TEST(RingLight, IsMetWhereItIsDrawn) {
     RingLight ring{};
     ring.distance = 25;
@@ -551,7 +554,7 @@ TEST(RingLight, IsMetWhereItIsDrawn) {
     EXPECT_NEAR(area / ring_area(ring), 1, 0.03);
 }
 
-// Columns and rows are told apart, and what lies between the sensitive parts of the pixels is not seen.
+// Columns and rows are told apart, and light between the sensitive parts of the pixels is not seen.
 TEST(Backward, KnowsRectangularDetectorsWithGaps) {
     auto description = ideal_description();
     description.detector_pixels = {24, 9};
@@ -573,7 +576,7 @@ TEST(Backward, KnowsRectangularDetectorsWithGaps) {
         return std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
     };
     EXPECT_NEAR(total(backward) / total(all), 0.49, 0.01);
-    // Pixels are where those of a larger square detector are.
+    // The pixels lie where those of a larger square detector do.
     auto square = whole;
     square.detector_pixels = ImageSize::square(24);
     const auto larger = backward_image(optics::assemble(square), rough, 2, 24 * 24 * 4096);
@@ -592,7 +595,8 @@ TEST(Backward, KnowsRectangularDetectorsWithGaps) {
                 std::min(std::pow(larger.flux(column, row + 8) - smaller.flux(column, row), 2) / variance, 40.0);
         }
     }
-    // Student's t of two degrees of freedom each: heavier than a normal, hence the cut above and the wide bound.
+    // Differences follow Student's t of two degrees of freedom each: heavier than a normal, hence the cut above and the
+    // wide bound.
     EXPECT_LT(chi_square / (24 * 8), 6);
     EXPECT_GT(chi_square / (24 * 8), 0.3);
 }

@@ -1,4 +1,4 @@
-// The tree's invariants, read back from its nodes by code of this file alone.
+// The tree keeps its invariants, read back from its nodes by code of this file alone.
 #include "trace/structures/bounding_volume_hierarchy.hpp"
 
 #include <gtest/gtest.h>
@@ -113,11 +113,12 @@ TEST(BoundingVolumeHierarchy, HoldsEveryPrimitiveOnceAndEnclosesIt) {
         }
     }
     const auto boxes = random_boxes(20'000, 0.01F, 41);
-    // log8(20'000 / 3) = 4.2; splits by area are uneven, but not by more than a few levels on even boxes.
+    // A tree of 20'000 boxes has log8(20'000 / 3) = 4.2 levels; splits by area are uneven, but not by more than a few
+    // levels on even boxes.
     EXPECT_LE(examine(build_hierarchy(boxes, 3), boxes).depth, 9);
 }
 
-// Large ones are made in parts that are put together.
+// Large trees are made in parts that are put together.
 TEST(BoundingVolumeHierarchy, IsWholeWhenMadeInParts) {
     const auto boxes = random_boxes(150'000, 0.01F, 45);
     const auto tree = build_hierarchy(boxes, 1);
@@ -157,7 +158,7 @@ TEST(BoundingVolumeHierarchy, TakesDegenerateBoxes) {
     }
 }
 
-// Places that halve again and again: by area alone, the tree would be about as deep as there are places over the four
+// The places halve again and again: by area alone, the tree would be about as deep as there are places over the four
 // that one set of bins tells apart.
 TEST(BoundingVolumeHierarchy, IsNeverDeeperThanTheShadersStack) {
     std::vector<Box> boxes;

@@ -15,7 +15,7 @@
 namespace vkfv::test {
 namespace {
 
-// Of a run that keeps them as often as it may, and of one that finds one.
+// Keeps checkpoints as often as it is given one, or gives the one with which it was made.
 class InMemory final : public trace::Checkpoints {
   public:
     InMemory() = default;
@@ -90,7 +90,7 @@ TEST_P(Checkpoint, GoesOnToTheSameBits) {
     const auto keeper = std::make_shared<InMemory>();
     expect_same(whole, tracer->begin(0.002, 3, keeper).get());
     ASSERT_FALSE(keeper->kept.empty());
-    // What other exposures leave in the device's memory does not count.
+    // The numbers that other exposures leave in the device's memory do not count.
     tracer->expose(-0.001, 1);
     const auto& kept = keeper->kept;
     const auto later = tracer_of(GetParam());
@@ -101,13 +101,13 @@ TEST_P(Checkpoint, GoesOnToTheSameBits) {
             EXPECT_GT(another->kept.front().done, found->done); // it did not begin anew
         }
     }
-    // What it counted is taken up: the wrong twin, whose pixels have more.
+    // The checkpoint's counts are taken up: the wrong twin, whose pixels have more, makes another image.
     trace::Checkpoint twin = kept.front();
     for (auto& number : twin.numbers) {
         number += 1000;
     }
     EXPECT_NE(whole.flux.values, tracer->begin(0.002, 3, std::make_shared<InMemory>(twin)).get().flux.values);
-    // One of another detector is not.
+    // A checkpoint of another detector is not taken up.
     twin.numbers.pop_back();
     expect_same(whole, tracer->begin(0.002, 3, std::make_shared<InMemory>(twin)).get());
 }
@@ -115,7 +115,7 @@ TEST_P(Checkpoint, GoesOnToTheSameBits) {
 TEST_P(Checkpoint, PartsOfSeveralDevicesGiveTheSameBits) {
     const auto tracer = tracer_of(GetParam());
     const trace::Image whole = tracer->expose(0.002, 3);
-    // Each part counts its own.
+    // Each part counts its own paths.
     const auto first = tracer->count(0.002, 3, 0, tracer->units() / 3);
     const auto second = tracer->count(0.002, 3, tracer->units() / 3, tracer->units());
     EXPECT_NE(first.numbers, second.numbers);
@@ -149,7 +149,7 @@ TEST(CheckpointClock, WithoutCheckpointsNoneIsDue) {
     const InMemory often;
     trace::CheckpointClock clock(&often);
     EXPECT_TRUE(clock.due());
-    // One that took a second is not due again for twenty.
+    // A checkpoint that took a second to keep is not due again for twenty.
     clock.kept(trace::CheckpointClock::Clock::now() - std::chrono::seconds(1));
     EXPECT_FALSE(clock.due());
 }

@@ -1,4 +1,4 @@
-// The surfaces that an image's light met.
+// The number of surfaces that an image's light met is counted.
 #include "trace/device/device_tracer.hpp"
 #include "trace/microscope.hpp"
 
@@ -8,7 +8,7 @@
 
 using namespace vkfv;
 
-// By the names of the ledger's rows, which say where light ended.
+// The truth is in the names of the ledger's rows, which say where light ended.
 TEST(Crossings, AreThoseOfTheLedger) {
     const auto instrument = optics::assemble(test::microscope_description());
     const auto specimen = test::rough_specimen();

@@ -1,4 +1,4 @@
-// The real train out of focus, against geometry.
+// The real train is out of focus as geometry says.
 #include "trace/device/ray_trace.hpp"
 #include "trace/microscope.hpp"
 
@@ -11,7 +11,8 @@ using namespace vkfv;
 
 namespace {
 
-// Diameter in the object of the blur of a point on the axis, `height` above best focus, by rays up to the sine `na`.
+// The diameter in the object of the blur of a point on the axis, `height` above best focus, by rays up to the sine
+// `na`.
 double blur_diameter(const optics::Instrument& instrument, double height, double na) {
     std::vector<trace::RayInput> rays;
     for (int k = 0; k < 64; ++k) {

@@ -1,5 +1,5 @@
-// Light that meets the specimen once, from a source that is aimed at the detector, against all that passes the
-// illumination.
+// Light that meets the specimen once, from a source that is aimed at the detector, makes the image of all light that
+// passes the illumination.
 #include "trace/agreement.hpp"
 #include "trace/device/device_tracer.hpp"
 #include "trace/host/host_tracer.hpp"
@@ -26,12 +26,12 @@ trace::TraceOptions once() {
     return result;
 }
 
-// Its points are up to 0.03 mm from the focal planes of these tests, where their light spreads.
+// A specimen with points up to 0.03 mm from the focal planes of these tests, where their light spreads.
 specimen::Specimen high_specimen() {
     return test::rough_specimen(0.65, 0.004, 0.03);
 }
 
-// The microscope with its aim at the detector; a wide one, as cameras are.
+// The microscope with its aim at the detector, which is wide, as cameras are.
 optics::Instrument aimed_microscope(double greatest_defocus = 0.03) {
     auto description = test::microscope_description();
     description.detector_pixels = {.columns = 64, .rows = 48};
@@ -68,14 +68,14 @@ TEST(DetectorAim, MakesTheImageOfAllLightWithFewerRays) {
     EXPECT_LT(std::abs(image.ledger.residual()), 1e-6 * image.ledger.emitted);
     EXPECT_LT(power_of(image.ledger, "beside the detector"), 0.7 * power_of(of_all.ledger, "beside the detector"));
     EXPECT_GT(power_of(image.ledger, "not aimed at"), power_of(of_all.ledger, "not aimed at"));
-    // Wrong twin: shorter sides, whose image lacks light at its edges and has all of it elsewhere.
+    // The wrong twin has shorter sides: its image lacks light at the edges and has all of it elsewhere.
     auto narrow = aimed;
     *narrow.single_scatter_aim *= 0.65;
     EXPECT_LT(test::total(trace::make_device_tracer(narrow, specimen, with)->expose(out_of_focus, 2).flux),
               sum_of_all - 8 * spread);
 }
 
-// Only for paths that cannot come back from beside the field.
+// The aim is taken only for paths that cannot come back from beside the field.
 TEST(DetectorAim, IsTakenForSingleScatterAlone) {
     const auto instrument = aimed_microscope();
     const auto is_taken = [&](const trace::TraceOptions& options) {
@@ -97,7 +97,7 @@ TEST(DetectorAim, IsTakenForSingleScatterAlone) {
     EXPECT_NE(digest, trace::traced_digest(whole, once())); // images of another aim are other images
 }
 
-// Fates as the host's in double; those within float rounding of an edge may differ (Paths.*).
+// Fates are those of the host in double; paths within float rounding of an edge may differ (Paths.*).
 TEST(DetectorAim, HostAndDeviceTraceTheSamePaths) {
     const auto instrument = optics::aimed_for_single_scatter(aimed_microscope());
     ASSERT_NE(instrument.features & FEATURE_AIMED_RECTANGLE, 0u);

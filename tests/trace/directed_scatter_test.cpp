@@ -1,4 +1,4 @@
-// Directed scatter: the image and the ledger of the analog form, with less noise.
+// Directed scatter has the image and the ledger of the analog form, with less noise.
 #include "trace/device/device_tracer.hpp"
 #include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
@@ -25,7 +25,7 @@ trace::TraceOptions options(bool directed, int max_bounces = 2) {
     return result;
 }
 
-// Few pixels, so that each has hundreds of detections and its mean is normally distributed.
+// The detector has few pixels, so that each has hundreds of detections and its mean is normally distributed.
 optics::Instrument coarse_microscope() {
     auto description = test::microscope_description();
     description.detector_pixels = ImageSize::square(8);
@@ -38,7 +38,7 @@ specimen::Specimen mixed_specimen() {
     return result;
 }
 
-// A third of its light is absorbed by the first lobe.
+// A specimen whose first lobe absorbs a third of its light.
 specimen::Specimen lossy_specimen() {
     auto result = test::rough_specimen(0, 0.008, 0.01);
     result.material.lobes = {{"ggx", 0.8, {0.6}}, {"mirror", 0.1, {}}};
@@ -77,9 +77,8 @@ double power(const trace::Image& image, const std::string& name) {
 
 } // namespace
 
-// A plane that scatters by Lambert's law under the middle of the gate, which is a circle of the slope r there: the
-// share r^2 / (1 + r^2) of its light passes. Both samples together have that mean; either with the weight 1 has
-// another.
+// A plane scatters by Lambert's law under the middle of the gate, which is a circle of the slope r there: the share r^2
+// / (1 + r^2) of its light passes. Both samples together have that mean; either with the weight 1 has another.
 TEST(DirectedScatter, BothSamplesTogetherHaveTheMeanOfTheLightInTheGate) {
     const auto instrument = test::microscope().constants;
     const Lobe lambertian{SCATTER_LAMBERTIAN, 1, 0, 0, 0, 0, {}};
@@ -126,8 +125,8 @@ TEST(DirectedScatter, TheAimIsTheGate) {
     EXPECT_EQ(outside, points);
 }
 
-// Chi-square per pixel and a z-test of the sum, eighteen tests that err together once in 1e4. Two fifths of the light
-// missing is found out.
+// Chi-square per pixel and a z-test of the sum are eighteen tests that err together once in 1e4. The wrong twin lacks
+// two fifths of the light.
 TEST(DirectedScatter, TheExpectedImageIsTheAnalogOne) {
     const auto instrument = coarse_microscope();
     const double level = test::sidak(1e-4, 18);
@@ -168,8 +167,7 @@ TEST(DirectedScatter, TheImageHasLessNoise) {
     EXPECT_LT(variance(directed), 0.2 * variance(analog)); // 0.10 seen
 }
 
-// Over images of other random numbers the residual varies as its stated error says: chi-square of 16 of them, 1e-4
-// each.
+// Over images of other random numbers the residual varies as its stated error says: chi-square of 16 images, 1e-4 each.
 TEST(DirectedScatter, TheLedgerClosesInExpectation) {
     const auto instrument = coarse_microscope();
     for (const auto& [specimen, bounces] :
@@ -226,7 +224,8 @@ TEST(DirectedScatter, BitsDoNotDependOnTheBatch) {
     EXPECT_NE(expose(instrument, specimen, with).flux.values, reference.flux.values); // wrong twin
 }
 
-// The same paths by every traversal and in double: images differ by ties within rounding alone, as in the analog form.
+// Every traversal, and the host in double, trace the same paths: images differ by ties within rounding alone, as in the
+// analog form.
 TEST(DirectedScatter, TraversalsAndHostGiveTheSameImage) {
     const auto instrument = coarse_microscope();
     const auto specimen = test::steep_specimen(0.65);
@@ -249,8 +248,8 @@ TEST(DirectedScatter, TraversalsAndHostGiveTheSameImage) {
     EXPECT_GT(differing(expose(instrument, test::steep_specimen(0.6), options(true, 3))), 5e-3); // wrong twin
 }
 
-// Path by path: the same fate, place and weight but for ties within rounding, which mirrors on facets enlarge: 76 of
-// 16146 that arrived when this was written, and 8 of 770 in the analog form.
+// Path by path the fate, place and weight are the same but for ties within rounding, which mirrors on facets enlarge:
+// 76 of 16146 that arrived when this was written, and 8 of 770 in the analog form.
 TEST(DirectedScatter, HostAndDeviceTraceTheSamePaths) {
     const auto instrument = test::microscope();
     const auto specimen = mixed_specimen();

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint64_t most = std::uint64_t{1} << 28;
 constexpr double longest = 0.2; // s
 
-// A device that is not filled by few paths.
+// The time that a device takes which few paths do not fill.
 double seconds_of(std::uint64_t paths, double rate) {
     return std::max(100e-6, static_cast<double>(paths) / rate);
 }
@@ -27,7 +27,7 @@ TEST(DispatchPace, NoSubmissionIsLongOnAnyDevice) {
         }
         EXPECT_TRUE(pace.settled());
         EXPECT_LE(waited_for, 6) << rate;
-        // And none so short that it keeps the device waiting.
+        // No submission is so short that it keeps the device waiting.
         EXPECT_TRUE(pace.paths() == most || seconds_of(pace.paths(), rate) > 0.05) << rate;
     }
 }
@@ -51,7 +51,7 @@ TEST(DispatchPace, TheRestOfAnExposureTellsNoRate) {
     const auto before = pace.paths();
     pace.took(10, 100e-6);
     EXPECT_EQ(pace.paths(), before);
-    // But that it takes long does.
+    // A rest that takes long does tell the rate.
     pace.took(10, 1);
     EXPECT_LT(pace.paths(), before);
 }

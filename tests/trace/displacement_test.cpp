@@ -1,4 +1,4 @@
-// A specimen that the stage holds beside its place: its image moves, whoever traces it.
+// The image of a specimen that the stage holds beside its place moves, whoever traces it.
 #include "trace/device/device_tracer.hpp"
 #include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
@@ -14,7 +14,7 @@ namespace {
 constexpr int side = 16;
 constexpr int columns = 3, rows = -2; // how far it moves, pixels
 
-// Sum of squares over variance of one image against another moved by so many pixels, a pixel; 1 where they agree.
+// The sum of squares over variance, a pixel, of one image against another moved by so many pixels; 1 where they agree.
 double difference(const trace::Image& first, const trace::Image& second, int right, int up) {
     double squares = 0, variance = 0;
     for (int row = 3; row < side - 3; ++row) {
@@ -37,7 +37,7 @@ TEST(Displacement, MovesTheImage) {
     description.turned = true;
     const auto instrument = optics::assemble(description);
     const double pitch = instrument.first_order.pixel_pitch;
-    // Its grating lights the pixels unlike each other.
+    // The specimen's grating lights the pixels unlike each other.
     auto specimen = test::rough_specimen();
     specimen.reflectance = specimen::make_reflectance_map(
         {.kind = specimen::Reflectance::Kind::grating, .angle = 0.6, .period = 0.013}, {-0.15, -0.15, 0.15, 0.15}, {});

@@ -22,14 +22,14 @@ inline trace::TraceOptions options(trace::Traversal traversal, bool nonsequentia
     return result;
 }
 
-// Few pixels, so that few rays make a sharp test.
+// A microscope with few pixels, so that few rays make a sharp test.
 inline optics::InstrumentDescription coarse_microscope() {
     auto description = test::microscope_description();
     description.detector_pixels = ImageSize::square(8);
     return description;
 }
 
-// p-value that two independent images have the same expectation.
+// The p-value that two independent images have the same expectation.
 inline double same_expectation_p(const trace::Image& a, const trace::Image& b) {
     double chi_square = 0;
     double degrees = 0;
@@ -43,7 +43,7 @@ inline double same_expectation_p(const trace::Image& a, const trace::Image& b) {
     return test::chi_square_tail(chi_square, degrees);
 }
 
-// Little roughness and a narrow lobe, so that much of the light returns.
+// A specimen of little roughness and a narrow lobe, so that much of the light returns.
 inline specimen::Specimen smooth_specimen() {
     return test::rough_specimen(0.95, 0.0002);
 }

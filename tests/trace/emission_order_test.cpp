@@ -61,7 +61,8 @@ Arrival arrival(const optics::Instrument& instrument, const Draws& draws) {
                       emit(instrument.scene(), instrument.constants, draws));
 }
 
-// Mean distance of light that arrives from the next path's that does, mm, in stretches of an image of 1E9 paths.
+// The mean distance in mm of light that arrives from that of the next path that does, in stretches of an image of 1E9
+// paths.
 template <class DrawsOf>
 double mean_step(const optics::Instrument& instrument, const DrawsOf& draws_of) {
     constexpr std::uint32_t stretches = 200, between = 5000000, paths = 100;
@@ -101,7 +102,7 @@ TEST(EmissionOrder, CellsHaveAsManyPathsAsIndependentOnesWouldBring) {
         };
         const double all = static_cast<double>(paths);
         EXPECT_LT(std::abs(excess_of(order.cells(), all, images, counts)), 4) << paths;
-        // Halves of the field: what a binomial number of paths has of variance.
+        // The number of paths in half of the field has the variance of a binomial number.
         const auto halves = [&](std::uint32_t image) {
             const auto cells = counts(image);
             const double half =
@@ -109,7 +110,7 @@ TEST(EmissionOrder, CellsHaveAsManyPathsAsIndependentOnesWouldBring) {
             return std::vector{half, all - half};
         };
         EXPECT_LT(std::abs(excess_of(2, all, images, halves)), 4) << paths;
-        // Wrong twin: shared out evenly, the rest by chance.
+        // In the wrong twin paths are shared out evenly, and the rest in turn.
         const auto even = [&](std::uint32_t image) {
             std::vector<double> result(order.cells(), std::floor(all / static_cast<double>(order.cells())));
             const auto rest = static_cast<std::size_t>(all - std::accumulate(result.begin(), result.end(), 0.0));
@@ -138,7 +139,7 @@ TEST(EmissionOrder, CellsAreAllOfTheCubeAndApart) {
         for (const glm::uvec4& given : order.given()) {
             seen.insert({given.x, given.y, given.z, given.w});
             EXPECT_EQ(given & order.drawn(), glm::uvec4(0));
-            // Sixteen upper bits of 21, as the kernels have them.
+            // Cells are given the sixteen upper bits of 21, as the kernels have them.
             EXPECT_EQ(given & ~glm::uvec4(0x1FFFE0), glm::uvec4(0));
         }
         EXPECT_EQ(seen.size(), order.cells());
@@ -165,7 +166,7 @@ TEST(EmissionOrder, NumbersAreUniformOverAllPaths) {
     constexpr int bins = 64;
     const EmissionOrder order(test::microscope(), paths, seed);
     const EmissionCells cells(order, 5);
-    // Of each of the six numbers.
+    // The excess of chi-square of each of the six numbers.
     const auto excesses = [&](std::uint32_t first_paths) {
         std::array<std::vector<double>, 6> counts;
         counts.fill(std::vector<double>(bins));
@@ -188,9 +189,9 @@ TEST(EmissionOrder, NumbersAreUniformOverAllPaths) {
 }
 
 TEST(EmissionOrder, ConsecutivePathsArriveCloseTogether) {
-    // 2^17 cells, of which 2^15 divide the disc's field. Of a ring light place and direction both say where light
-    // arrives: 2^(17 / 4) pieces of each of the four numbers, all of which move it. A quarter of
-    // the cells would be too few: steps of 0.06 and 0.23.
+    // There are 2^17 cells, of which 2^15 divide the disc's field. In a ring light place and direction both say where
+    // light arrives: 2^(17 / 4) pieces of each of the four numbers, all of which move it. A quarter of the cells would
+    // be too few: steps of 0.06 and 0.23.
     for (const auto& [instrument, most] : {std::pair(test::microscope(), 0.03), std::pair(aimed_microscope(), 0.03),
                                            std::pair(ring_microscope(), 0.2)}) {
         const EmissionOrder order(instrument, 1000000000, seed);

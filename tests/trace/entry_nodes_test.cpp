@@ -1,4 +1,4 @@
-// Where a ray may enter the tree: nothing that it could meet stands beside the node.
+// From the node at which a ray may enter the tree, nothing that it could meet stands beside it.
 #include "trace/structures/entry_nodes.hpp"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(EntryNodes, HoldAllThatIsOverACellAndItsNeighbours) {
                 const std::size_t place = entry_level_begin(level) + static_cast<std::size_t>(row * side + column);
                 std::set<std::uint32_t> held, held_by_twin;
                 add_primitives(tree, entries.nodes.at(place), held);
-                // Wrong twin: the node of the next cell but one.
+                // The wrong twin is the node of the next cell but one.
                 const int other = column + 2 < side ? column + 2 : std::max(0, column - 2);
                 add_primitives(
                     tree, entries.nodes.at(place - static_cast<std::size_t>(column) + static_cast<std::size_t>(other)),

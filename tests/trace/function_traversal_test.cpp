@@ -1,4 +1,4 @@
-// Analytic surfaces, and the bounds by which they are traversed: against facets and against the host's reference.
+// Analytic surfaces, and the bounds by which they are traversed, agree with facets and with the host's reference.
 #include "traversal_rays.hpp"
 
 #include "trace/structures/pyramid.hpp"
@@ -58,7 +58,7 @@ Pair sinusoid() {
             amplitude * number * number * pitch * pitch / 8, amplitude * number};
 }
 
-// h = A sin(2 pi p(x)) with p'' = s: |h''| <= A ((2 pi p')^2 + 2 pi s).
+// The bound of h = A sin(2 pi p(x)) with p'' = s is |h''| <= A ((2 pi p')^2 + 2 pi s).
 Pair chirp() {
     const double amplitude = 0.0005;
     const double start = 1 / 0.03;
@@ -87,10 +87,10 @@ Pair sphere() {
             pitch * pitch / 4 * radius * radius / (z * z * z), std::sqrt(r_squared) / z};
 }
 
-// A lattice interpolated by cubic convolution against the facets over the same points. Along a line its
-// distance from the chord is u (1 - u) / 2 times a mean of the neighbouring second differences, so at most
-// 1/8 of them; the weights across add up to at most 5/4 in size. The bilinear patch between is within 1/4 of
-// its mixed difference of the facets.
+// The lattice is interpolated by cubic convolution, and compared with the facets over the same points. Along a line its
+// distance from the chord is u (1 - u) / 2 times a mean of the neighbouring second differences, so at most 1/8 of them;
+// the weights across add up to at most 5/4 in size. The bilinear patch between is within 1/4 of its mixed difference of
+// the facets.
 Pair lattice() {
     Pair pair;
     pair.facets = make_field(points, pitch, RandomWaves(0.0002, 0.015, 11));
@@ -125,11 +125,11 @@ TEST_P(FacetsAndFunction, AgreeWithinTheInterpolationsBound) {
     const specimen::Specimen function{pair.analytic, {}};
     const double aperture = 0.3;
     const double tolerance = along_ray(pair.bound, pair.slope, aperture);
-    // A shift by 3 nm must stand out of it.
+    // A shift by 3 nm must stand out of the tolerance.
     ASSERT_LT(2 * tolerance, 3 * nm / (1 + pair.slope * std::tan(std::asin(aperture))));
 
-    // Where the lattice goes on level, two cells from the border, its distance from the facets is not bounded
-    // so; and facets reach no further than their own top plane.
+    // Two cells from the border, where the lattice goes on level, its distance from the facets is not bounded so; and
+    // facets reach no further than their own top plane.
     auto rays = rays_from_top(function, 50'000, aperture, -0.004, 13);
     const specimen::Intersector reference(facets);
     const auto on_facets = meet(facets, Traversal::quadtree, rays);
@@ -207,8 +207,8 @@ TEST(Pyramid, EnclosesTheSurface) {
     }
 }
 
-// By brute force: no point of the surface within a block's side of the block stands over its ceiling, and every ceiling
-// is needed; the steepest facet is the one that a search by cross products finds.
+// The truth is brute force: no point of the surface within a block's side of the block stands over its ceiling, and
+// every ceiling is needed; the steepest facet is the one that a search by cross products finds.
 TEST(Ceilings, StandOverAllThatIsNear) {
     auto field = make_field(151, 0.001, RandomWaves(0.004, 0.02, 29));
     field.pitch_y = 0.0013; // blocks are counted in cells

@@ -1,4 +1,4 @@
-// A path's last scatter, decided by the gate (scatter_into_gate), against the lobes' own draws and their density.
+// A path's last scatter, decided by the gate (scatter_into_gate), agrees with the lobes' own draws and their density.
 #include "trace/microscope.hpp"
 
 #include "physics/scatter_registry.hpp"
@@ -44,7 +44,7 @@ Incidence incidence_of(const Case& c) {
 
 constexpr int rings = 6, sectors = 8;
 
-// Equal cells of the gate's slopes.
+// The number of the cell of a direction: cells are equal in the gate's slopes.
 std::size_t cell_of(const GateDisc& disc, real3 direction) {
     const double x = (direction.x / direction.z - disc.centre.x) / disc.radius;
     const double y = (direction.y / direction.z - disc.centre.y) / disc.radius;
@@ -53,7 +53,7 @@ std::size_t cell_of(const GateDisc& disc, real3 direction) {
     return static_cast<std::size_t>(ring * sectors + sector);
 }
 
-// What passes into each cell, and in the last place what does not pass.
+// The draws that pass into each cell of the gate, and in the last place those that do not pass.
 std::vector<double> gated(const Case& c, const GateDisc& disc, std::uint32_t draws) {
     std::vector<double> seen(rings * sectors + 1);
     for (std::uint32_t k = 0; k < draws; ++k) {
@@ -65,7 +65,8 @@ std::vector<double> gated(const Case& c, const GateDisc& disc, std::uint32_t dra
     return seen;
 }
 
-// By the density, over a fine grid of slopes; jacobian: the power of the cosine by which slopes become a solid angle.
+// The expected counts by the density, over a fine grid of slopes; `jacobian` is the power of the cosine by which slopes
+// become a solid angle.
 std::vector<double> expected(const Case& c, const GateDisc& disc, std::uint32_t draws, int jacobian = 3) {
     std::vector<double> wanted(rings * sectors + 1);
     constexpr int fine = 24;
@@ -104,13 +105,13 @@ TEST(GatedScatter, HasTheLobesDensityInTheGate) {
                                           << c.theta << " tilt " << c.tilt);
         const auto seen = gated(c, disc, draws);
         EXPECT_GT(test::chi_square_p(seen, expected(c, disc, draws)), level);
-        // Wrong twin: slopes taken for a solid angle.
+        // The wrong twin takes slopes for a solid angle.
         seen_by_twin += test::chi_square_p(seen, expected(c, disc, draws, 0)) < level ? 1 : 0;
     }
     EXPECT_GT(seen_by_twin, static_cast<int>(all.size()) * 2 / 3);
 }
 
-// The plain form: directions drawn over the whole hemisphere, those outside the gate escape.
+// The truth is the plain form: directions are drawn over the whole hemisphere, and those outside the gate escape.
 TEST(GatedScatter, LooksLikeDirectionsDrawnOneByOne) {
     const GateDisc disc = disc_of_10x();
     constexpr std::uint32_t draws = 400000;
@@ -152,13 +153,13 @@ TEST(GatedScatter, IsUsedWhereItIsExactAlone) {
     EXPECT_FALSE(applies(hg(1), disc_of_10x(), 0));
     EXPECT_FALSE(applies({SCATTER_MIRROR, 1, 0, 0, 0, 0, {}}, disc_of_10x(), 0));
     EXPECT_FALSE(applies({SCATTER_GGX, 1, 0.3, 0, 0, 0, {}}, disc_of_10x(), 0));
-    // From behind the surface: counted as numerical by the plain form.
+    // Light from behind the surface is left to the plain form, which counts it as numerical.
     const Incidence behind = make_incidence(up, up);
     EXPECT_FALSE(scatter_into_gate(hg(0.3), behind, disc_of_10x(), 0.5, 0.5, 0.5).applies);
 }
 
-// The share of a lobe that a cone holds, in a float as in double: of a lobe that is all but Lambertian its difference
-// of two nearly equal numbers would be noise.
+// The share of a lobe that a cone holds is the same in float as in double: for a lobe that is all but Lambertian a
+// difference of two nearly equal numbers would be noise.
 TEST(GatedScatter, KnowsTheShareWithinAConeInAFloat) {
     for (const double g : {1e-8, 6e-8, 1e-6, 1e-3, 0.3, 0.9, 0.99}) {
         Lobe lobe = specimen::tabulated({SCATTER_HENYEY_GREENSTEIN, 1, g, 0, 0, 0, {}});
@@ -173,7 +174,7 @@ TEST(GatedScatter, KnowsTheShareWithinAConeInAFloat) {
             const auto found = physics::f32::henyey_greenstein_cone(rounded.parameter_0, rounded.table, same,
                                                                     static_cast<float>(versine), 0.5F, 0.5F);
             EXPECT_NEAR(static_cast<double>(found.bound) / share, 1, 2e-5) << g << ' ' << versine;
-            // The whole sphere holds all of it: 1 / N.
+            // The whole sphere holds all of the lobe: 1 / N.
             const double all = 1 / henyey_greenstein_norm(g, lobe.table, 1);
             EXPECT_TRUE(versine < 2 ? share < all : std::abs(share / all - 1) < 1e-12) << g;
         }

@@ -1,4 +1,5 @@
-// Whole images: ledger, determinism, traversals, radiometry.
+// Whole images have the right ledger and radiometry, depend on nothing else than they may, and are the same by all
+// traversals.
 #include "trace/device/device_tracer.hpp"
 #include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
@@ -30,7 +31,7 @@ trace::Image expose(const optics::Instrument& instrument, const specimen::Specim
     return trace::make_device_tracer(instrument, specimen, with)->expose(z, image);
 }
 
-// p-value that two images of independent counts have the same expectation (counts, two-sample chi-square).
+// The p-value that two images of independent counts have the same expectation (counts, two-sample chi-square).
 double same_expectation_p(const trace::Image& a, const trace::Image& b) {
     double chi_square = 0, degrees = 0;
     for (std::size_t k = 0; k < a.flux.values.size(); ++k) {
@@ -70,7 +71,7 @@ TEST(Image, TheLedgerClosesForAnalogAndAimedEmission) {
     }
 }
 
-// Uncoated interfaces: every loss is counted at its surface. Light from the source meets the first one, of B270 (n
+// With uncoated interfaces every loss is counted at its surface. Light from the source meets the first one, of B270 (n
 // = 1.523 at d), all but normally.
 TEST(Image, TheLedgerCountsWhatInterfacesReflect) {
     auto description = test::microscope_description();
@@ -103,8 +104,8 @@ TEST(Image, TheLedgerCountsWhatInterfacesReflect) {
     EXPECT_LT(double(image.detected), 0.7 * double(lossless.detected));
 }
 
-// Power per ray: whole before the splitter, R beyond it, R (1 - R) beyond its second pass; a wrong split would still
-// close.
+// The power of a ray is whole before the splitter, R beyond it, R (1 - R) beyond its second pass; a wrong split would
+// still close the ledger.
 TEST(Image, TheLedgerGivesEachLossThePowerItCarried) {
     auto description = test::microscope_description();
     description.splitter.reflectance = 0.3;
@@ -167,8 +168,8 @@ TEST(Image, BitsDoNotDependOnTheBatchOrTheRun) {
     EXPECT_NE(expose(instrument, specimen, other).flux.values, reference.flux.values); // wrong twin
 }
 
-// The same paths meet the same facets: the two traversals differ in a few detections of ties within rounding. The
-// images also agree with the host's, and a specimen of another g does not.
+// The two traversals trace the same paths to the same facets, and differ in a few detections of ties within rounding.
+// The images also agree with the host's; the image of a specimen of another g does not.
 TEST(Image, TraversalsAndHostGiveTheSameImage) {
     const auto instrument = test::microscope();
     const auto specimen = test::rough_specimen();
@@ -184,7 +185,7 @@ TEST(Image, TraversalsAndHostGiveTheSameImage) {
     };
     EXPECT_LT(differing(quadtree, ray_query), 1e-3);
     EXPECT_LT(differing(quadtree, host), 5e-3); // pixels' borders within the float error of 0.04 um of 20 um
-    // Independent paths: chi-square over the pixels, false-positive rate 1e-4.
+    // Independent paths are compared by chi-square over the pixels, with a false-positive rate of 1e-4.
     auto fresh = options(trace::Traversal::ray_query);
     fresh.seed = 77;
     EXPECT_GT(same_expectation_p(quadtree, expose(instrument, specimen, fresh)), 1e-4);
@@ -221,8 +222,8 @@ TEST(Image, AnInstrumentInConstantsGivesTheImageOfOneInABuffer) {
                 1e-3 * static_cast<double>(known.detected));
 }
 
-// The illumination as polynomials: what becomes of light in it is the same ray by ray, and where it arrives differs by
-// less than 0.2 um, which moves a few in a hundred to another facet and changes no expectation.
+// Light in the illumination as polynomials ends as in the trace, ray by ray, and where it arrives differs by less than
+// 0.2 um, which moves a few in a hundred to another facet and changes no expectation.
 TEST(Image, AnIlluminationInPolynomialsGivesTheImageOfOneThatIsTraced) {
     const auto instrument = test::microscope();
     const auto specimen = test::rough_specimen();
@@ -249,8 +250,8 @@ TEST(Image, AnIlluminationInPolynomialsGivesTheImageOfOneThatIsTraced) {
     EXPECT_LT(same_expectation_p(by_polynomials, expose(instrument, test::rough_specimen(0.3), fresh)), 1e-4);
 }
 
-// One scatter event on a plane: every ray that comes to the specimen is absorbed or not by its reflectance, and the
-// ledger closes with its power in a row of its own. As many bounces change nothing, as a plane is met once.
+// A plane scatters light once: every ray that comes to the specimen is absorbed or not by its reflectance, and the
+// ledger closes with its power in a row of its own. More bounces change nothing, as a plane is met once.
 TEST(Image, WhatTheSpecimenDoesNotReflectIsAbsorbed) {
     const auto instrument = test::microscope();
     specimen::Specimen plane = test::plane_specimen(0.0);
@@ -274,7 +275,7 @@ TEST(Image, WhatTheSpecimenDoesNotReflectIsAbsorbed) {
             const auto image = on_host ? trace::make_host_tracer(instrument, plane, options())->expose(0.001, 2)
                                        : expose(instrument, plane, options());
             EXPECT_LT(std::abs(image.ledger.residual()), 1e-6 * image.ledger.emitted);
-            // The white specimen's rays came to it likewise: the same source, the same random numbers.
+            // The same rays came to the white specimen: it has the same source and the same random numbers.
             double arrived = 0;
             for (const char* name : {"detected", "escaped outside the pupil", "bounce limit", "beside the detector"}) {
                 arrived += count(white, name);
@@ -284,16 +285,16 @@ TEST(Image, WhatTheSpecimenDoesNotReflectIsAbsorbed) {
             }
             ASSERT_GT(arrived, 10000);
             const double absorbed = count(image, "absorbed by the specimen");
-            // 6e-5 for each of six.
+            // The false-positive rate is 6e-5 for each of six.
             EXPECT_LT(test::share_z(absorbed, arrived, 0.5), 4.0) << lobes[0].model;
             EXPECT_GT(test::share_z(absorbed, arrived, 0.53), 4.0) << lobes[0].model; // wrong twin
         }
     }
 }
 
-// White furnace with every bounce permitted: whatever reaches the specimen leaves it again. Of 400 000 paths about 7
-// are under way after 16 bounces, 1 after 32 and one in six times 1 after 64, where the reference in double says how
-// many; at 256 chance has no say.
+// In a white furnace with every bounce permitted, light that reaches the specimen leaves it again. Of 400 000 paths
+// about 7 are under way after 16 bounces, 1 after 32 and one in six times 1 after 64, where the reference in double
+// says how many; at 256 chance has no say.
 TEST(Image, ARoughSpecimenLosesNothingToBounces) {
     const auto instrument = test::microscope();
     const auto specimen = test::steep_specimen(0.0);

@@ -1,4 +1,4 @@
-// What the ledger's entries say of themselves beside their words.
+// An entry of the ledger has the status, the train and the surface of which its name speaks.
 #include "trace/interface/ledger.hpp"
 #include "trace/microscope.hpp"
 
@@ -51,7 +51,7 @@ TEST(Ledger, TellsElementsOfTheRoomWithoutATrain) {
     EXPECT_EQ(last.surface, 1);
 }
 
-// Instruments of about as many surfaces have kernels in common; what a kernel has room for beyond is not read.
+// Instruments of about as many surfaces have kernels in common; the numbers beyond an instrument's own are not read.
 TEST(Ledger, HasRoomInWholeSteps) {
     const auto instrument = test::microscope();
     const std::size_t used = physics::f64::PATH_STATUS_COUNT + 4 * instrument.surfaces.size();

@@ -1,4 +1,4 @@
-// Patterns and uneven light in the plane of the field stop: what they look like on the specimen, in all ways of
+// Patterns and uneven light in the plane of the field stop look on the specimen as closed forms say, in all ways of
 // tracing.
 #include "trace/agreement.hpp"
 #include "trace/device/device_tracer.hpp"
@@ -42,7 +42,7 @@ optics::Instrument with(const std::optional<optics::LightField>& light) {
     return optics::assemble(description);
 }
 
-// The same by an illuminator of real lenses.
+// The instrument with an illuminator of real lenses in place of the ideal one.
 optics::Instrument by_real_lenses(const std::optional<optics::LightField>& light) {
     auto description = small_description();
     const auto real = test::microscope_description();
@@ -52,7 +52,7 @@ optics::Instrument by_real_lenses(const std::optional<optics::LightField>& light
     return optics::assemble(description);
 }
 
-// Nothing but a falloff, until a pattern is given.
+// Light with nothing but a falloff, until a pattern is given.
 optics::LightField even() {
     optics::LightField light;
     light.record.pattern.lowest = light.record.pattern.highest = 1;
@@ -60,7 +60,8 @@ optics::LightField even() {
     return light;
 }
 
-// Squares of chance, of another number along y, with no symmetry; and the light falls off from beside the axis.
+// A pattern of squares of chance, of another number along y and with no symmetry; and the light falls off from beside
+// the axis.
 optics::LightField uneven(bool upside_down = false) {
     optics::LightField light = even();
     Pattern& pattern = light.record.pattern;
@@ -115,7 +116,7 @@ specimen::Specimen flat(const std::string& scatter) {
     return {plane, specimen::Material{{{scatter, 1, {}}}}};
 }
 
-// Of the image over that without a pattern: the coefficient of so many periods in the field.
+// The Fourier coefficient of so many periods in the field, of the image over that without a pattern.
 std::complex<double> coefficient(const trace::Image& image, const trace::Image& bare, int along_x, int along_y) {
     const int pixels = image.flux.columns;
     std::complex<double> sum = 0;
@@ -175,8 +176,8 @@ TEST(LightField, FallsOffFromItsBrightestPlace) {
     }
 }
 
-// A mirror shows the stop's plane: in focus a grating has the pixels' contrast alone. Out of focus by h its light comes
-// from within 2 h tan(theta), uniform over the aperture's direction cosines.
+// A mirror shows the stop's plane: in focus a grating has the pixels' contrast alone. If it is out of focus by h, its
+// light comes from within 2 h tan(theta), uniform over the aperture's direction cosines.
 TEST(LightField, AMirrorShowsAGratingAndLosesItOutOfFocus) {
     const auto bare_instrument = with(std::nullopt);
     const auto instrument = with(grating(bare_instrument.first_order.field_stop_magnification));
@@ -206,7 +207,7 @@ TEST(LightField, AMirrorShowsAGratingAndLosesItOutOfFocus) {
     EXPECT_LT(blurred(0.003), 0.75);
 }
 
-// Forward from the source, backward from the pixels, and light that finds its own way.
+// Forward from the source, backward from the pixels, and by light that finds its own way the expectation is one.
 TEST(LightField, AllWaysOfTracingHaveOneExpectation) {
     const auto instrument = with(uneven());
     const auto specimen = test::smooth_specimen();
@@ -222,7 +223,7 @@ TEST(LightField, AllWaysOfTracingHaveOneExpectation) {
     EXPECT_GT(agreement(forward, expected), level);
     EXPECT_GT(agreement(nonsequential, expected), level);
     EXPECT_GT(agreement(expose(instrument, specimen, options(Estimator::forward, 60'000, 2), true), expected), level);
-    // Wrong twins: the pattern upside down, and light that is brightest on the axis.
+    // The wrong twins are the pattern upside down, and light that is brightest on the axis.
     auto centred = uneven();
     centred.record.brightest_x = centred.record.brightest_y = 0;
     for (const auto& twin : {uneven(true), centred}) {
@@ -230,7 +231,7 @@ TEST(LightField, AllWaysOfTracingHaveOneExpectation) {
     }
 }
 
-// A reticle: the pattern is on the first face of a plate of glass.
+// In a reticle the pattern is on the first face of a plate of glass.
 TEST(LightField, IsMetOnGlassByAllWaysOfTracing) {
     auto description = small_description();
     auto& surfaces = description.illumination.surfaces;
@@ -259,7 +260,8 @@ TEST(LightField, IsMetOnGlassByAllWaysOfTracing) {
     EXPECT_LT(agreement(nonsequential, expose(lit_by(even()), specimen, backward)), level);
 }
 
-// What the pattern takes is an entry at the stop: half of what comes through the hole around it.
+// The light that the pattern takes is an entry of the ledger at the stop: half of what comes through the hole around
+// it.
 TEST(LightField, TheLedgerCountsWhatThePatternTakes) {
     optics::LightField light = even();
     light.record.pattern.lowest = 0.2;

@@ -1,5 +1,5 @@
-// Elements that are meshes: closed forms of a plate and a prism, Stokes' pile of plates, edges that nothing leaks
-// through, a plate as a mesh against the same plate as two surfaces, and the device against the host.
+// Elements that are meshes agree with closed forms of a plate and a prism and with Stokes' pile of plates, leak nothing
+// at their edges, and give the image of the same plate as two surfaces; the device agrees with the host.
 #include "trace/device/device_tracer.hpp"
 #include "trace/elements.hpp"
 #include "trace/host/host_tracer.hpp"
@@ -21,7 +21,8 @@ using optics::Facets;
 using optics::MeshElement;
 using optics::PlacedMesh;
 
-// Counter-clockwise seen from outside. profile: points (y, z), counter-clockwise seen from +x; drawn along x.
+// A body drawn out along x, its facets counter-clockwise seen from outside. `profile` has points (y, z),
+// counter-clockwise seen from +x.
 Facets drawn_out(const std::vector<glm::dvec2>& profile, double half_width) {
     Facets body;
     const auto corners = static_cast<std::uint32_t>(profile.size());
@@ -46,7 +47,7 @@ Facets box(double half_width, double bottom, double top) {
     return drawn_out({{-half_width, bottom}, {half_width, bottom}, {half_width, top}, {-half_width, top}}, half_width);
 }
 
-// Each facet of an octahedron in four, and all corners on the sphere, so many times.
+// A ball: each facet of an octahedron is divided in four, and all corners put on the sphere, so many times.
 Facets ball(double radius, int times) {
     Facets body{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
                 {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
@@ -86,7 +87,7 @@ PlacedMesh placed(Facets facets, const optics::Pose& pose, MeshElement::Kind kin
     return mesh;
 }
 
-// One ray up the axis.
+// A single ray up the axis.
 physics::f64::Instrument ray() {
     auto instrument = pencil(1000, 1);
     instrument.source_radius = 0;
@@ -107,7 +108,7 @@ constexpr double rounding = 1e-5; // mm: corners are kept to 1e-6 of single prec
 
 } // namespace
 
-// t sin(theta - theta') / cos(theta') beside its way; a turn about x leans the plate's normal to -y.
+// A plate moves a ray by t sin(theta - theta') / cos(theta'); a turn about x leans the plate's normal to -y.
 TEST(MeshElement, ATiltedPlateMovesARayAsSnellSays) {
     constexpr double thickness = 3, index = 1.5168;
     const double theta = 20 * pi / 180;
@@ -121,12 +122,13 @@ TEST(MeshElement, ATiltedPlateMovesARayAsSnellSays) {
     EXPECT_GT(std::abs(y_at(60, plate) - moved(index + 0.02)), 100 * rounding); // wrong twin
 }
 
-// A prism of 60 degrees at the least deviation: n = sin((A + D) / 2) / sin(A / 2).
+// A prism of 60 degrees at the least deviation obeys n = sin((A + D) / 2) / sin(A / 2).
 TEST(MeshElement, APrismTurnsLightByItsDeviation) {
     constexpr double index = 1.5168;
     static constexpr double apex = pi / 3;
     const auto deviation = [](double n) { return 2 * std::asin(n * std::sin(apex / 2)) - apex; };
-    // Its apex to -y; the ray meets the middle of its first face from below, at the angle of incidence (A + D) / 2.
+    // The prism's apex points to -y; the ray meets the middle of its first face from below, at the angle of incidence
+    // (A + D) / 2.
     const double height = 10 * std::sqrt(3.0);
     const Facets prism = drawn_out({{-height / 2, 0}, {height / 2, -10}, {height / 2, 10}}, 10);
     // Without a turn the first face's outward normal is at A / 2 from -z towards -y.
@@ -157,8 +159,8 @@ TEST(MeshElement, ARoofOfTwoMirrorsSendsLightBack) {
     }
 }
 
-// Light of one facet stays parallel, so a lens of facets makes spots as wide as these: half as wide, half the spot. Of
-// a ball, whose focus is at n R / (2 (n - 1)) from its centre.
+// Light of one facet stays parallel, so a lens of facets makes spots as wide as these: half as wide, half the spot. The
+// lens is a ball, whose focus is at n R / (2 (n - 1)) from its centre.
 TEST(MeshElement, ALensMakesSpotsAsWideAsItsFacets) {
     constexpr double index = 1.5, radius = 7;
     const auto spot = [&](int times) { // root mean square distance from the axis, mm
@@ -184,7 +186,8 @@ TEST(MeshElement, ALensMakesSpotsAsWideAsItsFacets) {
     EXPECT_LT(finest, width);
 }
 
-// As Nonsequential.FivePlatesPassWhatStokesSays, of meshes.
+// Stokes' formula for a pile of plates, as in Nonsequential.FivePlatesPassWhatStokesSays, holds for plates of meshes
+// too.
 TEST(MeshElement, FivePlatesPassWhatStokesSays) {
     const auto passed = [](double index) {
         const double reflectance = (index - 1) * (index - 1) / ((index + 1) * (index + 1));
@@ -202,8 +205,8 @@ TEST(MeshElement, FivePlatesPassWhatStokesSays) {
     EXPECT_GT(test::share_z(share * paths, paths, passed(1.5368)), 4); // wrong twin
 }
 
-// Rays from within, straight at every corner and at points of every edge, and anywhere: each meets a facet, whichever
-// of the neighbours it is. In double, and in the arithmetic of the device.
+// Rays from within, straight at every corner and at points of every edge, and anywhere, each meet a facet, whichever of
+// the neighbours it is: in double, and in the arithmetic of the device.
 TEST(MeshElement, NoRayPassesBetweenFacets) {
     optics::Room room;
     room.add_mesh(placed(ball(7, 2), optics::Pose{{1, 2, 300}, glm::dmat3(1)}, MeshElement::Kind::absorber));
@@ -236,7 +239,7 @@ TEST(MeshElement, NoRayPassesBetweenFacets) {
 
 namespace {
 
-// Elements and facets in the device's arithmetic; counts what light within glass meets.
+// Elements and facets in the device's arithmetic; it counts what light within glass meets.
 struct SingleBench {
     explicit SingleBench(const optics::Room& room) {
         for (const Element& element : room.elements) {
@@ -286,8 +289,8 @@ struct SingleBench {
 
 } // namespace
 
-// Light that is caught by total reflection in a grain of glass far from the origin, where a start is rounded to a
-// thousandth of the grain: it never gets out but through a facet. What rounding puts beside an edge ends as numerical.
+// Light is caught by total reflection in a grain of glass far from the origin, where a start is rounded to a thousandth
+// of the grain: it never gets out but through a facet. A path that rounding puts beside an edge ends as numerical.
 TEST(MeshElement, LightLeavesGlassThroughFacetsAlone) {
     int inside = 0, beside = 0, numerical = 0;
     for (const Facets& body : {ball(0.05, 2), box(0.02, -0.02, 0.02)}) {
@@ -339,7 +342,7 @@ TEST(MeshElement, OpenAndTurnedMeshesAreTold) {
     }
 }
 
-// A ball with a hole in which another ball stands, and one beside them; each of them either way round.
+// The bodies are a ball with a hole in which another ball stands, and one beside them; each of them either way round.
 TEST(MeshElement, EachBodyOfAFileIsTurnedByItself) {
     struct Body {
         double radius, x;
@@ -379,7 +382,7 @@ MeshElement element(Facets facets, const optics::Pose& pose, MeshElement::Kind k
     return mesh;
 }
 
-// A wedge, and a baffle that reaches into the light, between objective and beam splitter.
+// A microscope with a wedge, and a baffle that reaches into the light, between objective and beam splitter.
 optics::InstrumentDescription microscope_with_meshes() {
     auto description = coarse_microscope();
     description.interfaces.model = optics::Interfaces::Model::fresnel;
@@ -405,8 +408,8 @@ TEST(MeshElement, HostAndDeviceTraceTheSamePaths) {
     expect_same_paths(optics::assemble(microscope_with_meshes()));
 }
 
-// A cover glass as two surfaces and as a box of six faces, in the same microscope: the same image, and the ledger of
-// what ends at the baffle closes.
+// A cover glass as two surfaces and as a box of six faces, in otherwise equal microscopes, give the same image, and the
+// ledger closes.
 TEST(MeshElement, ACoverGlassOfFacetsGivesTheImageOfOneOfSurfaces) {
     auto description = ideal_microscope_description();
     description.detector_pixels = ImageSize::square(8);
@@ -419,7 +422,7 @@ TEST(MeshElement, ACoverGlassOfFacetsGivesTheImageOfOneOfSurfaces) {
     const auto height_of = [](const optics::Instrument& instrument, optics::Part part) {
         return std::ranges::find(instrument.elements, part, &optics::Element::part)->pose.origin.z;
     };
-    // The specimen as far from the objective in both.
+    // The specimen is as far from the objective in both.
     const double lower =
         height_of(with_surfaces, optics::Part::objective) - height_of(without, optics::Part::objective);
     const double face =
@@ -436,6 +439,6 @@ TEST(MeshElement, ACoverGlassOfFacetsGivesTheImageOfOneOfSurfaces) {
     EXPECT_GT(of_mesh.detected, 5000u);
     EXPECT_GT(same_expectation_p(of_surfaces, of_mesh), 1e-4); // false-positive rate
     EXPECT_LT(std::abs(of_mesh.ledger.residual()), 1e-12 * of_mesh.ledger.emitted);
-    // Wrong twin: none at all, a third of a millimetre out of focus.
+    // The wrong twin has no glass at all, and is a third of a millimetre out of focus.
     EXPECT_LT(same_expectation_p(of_surfaces, image(without, 0.001 + lower, 3)), 1e-4);
 }

@@ -1,4 +1,4 @@
-// Meshes that are height fields: which are, and that the walk over their cells meets what their triangles are.
+// Meshes that are height fields are known as such, and the walk over their cells meets what their triangles are.
 #include "trace/structures/mesh_lattice.hpp"
 #include "traversal_rays.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-// How the cell (column, row) is split: from (i+1, j) to (i, j+1).
+// Whether the cell (column, row) is split from (i+1, j) to (i, j+1).
 using Falls = std::function<bool(int, int)>;
 
 // A height field as the triangles that a file would hold: three vertices each, in random order and sense.
@@ -72,7 +72,7 @@ TEST(MeshLattice, IsFoundInWhatHeightMapsAreExportedAs) {
             EXPECT_EQ(lattice->falling[static_cast<std::size_t>(row * 127 + column)], by_turns(column, row));
         }
     }
-    // Wider than deep.
+    // The field is wider than deep.
     specimen::HeightField strip = make_field(40, 0.001, RandomWaves(0.0006, 0.006, 6));
     strip.heights.rows = 3;
     strip.heights.values.resize(120);
@@ -109,7 +109,7 @@ TEST(MeshLattice, IsNotFoundWhereThereIsNone) {
     EXPECT_FALSE(lattice_of({{{0, 0, 0}, {0, 1, 0}, {0, 2, 0}}, {{0, 1, 2}, {0, 1, 2}}}));
 }
 
-// Down from above, and on from where they met, over the hemisphere.
+// Rays go down from above, and on from where they met, over the hemisphere.
 TEST(MeshLattice, IsMetAsItsTriangles) {
     for (const Falls& falls :
          {Falls(by_turns), Falls([](int, int) { return true; }), Falls([](int, int) { return false; })}) {
@@ -129,7 +129,7 @@ TEST(MeshLattice, IsMetAsItsTriangles) {
         EXPECT_EQ(seen.one_only, 0u);
         EXPECT_EQ(seen.apart, 0u);
         EXPECT_LE(static_cast<double>(seen.for_rounding), 10 * share_for_rounding * static_cast<double>(rays.size()));
-        // Wrong twin: the same heights, split the other way.
+        // The wrong twin has the same heights, split the other way.
         const specimen::Specimen other{soup(waves(), [&](int i, int j) { return !falls(i, j); }), {}};
         const Comparison wrong = compare(reference, rays, meet(other, Traversal::quadtree, rays), expected, nm);
         EXPECT_GT(wrong.one_only + wrong.apart, rays.size() / 20);

@@ -1,4 +1,5 @@
-// Meshes against closed forms and the host's reference; which traversal is chosen, and what no device holds.
+// Traversals of meshes agree with closed forms and the host's reference; the traversal chosen is known, and meshes that
+// no device holds are refused.
 #include "traversal_rays.hpp"
 
 #include "core/messages/error.hpp"
@@ -54,7 +55,7 @@ specimen::Mesh octahedral_sphere(double radius, int halvings) {
     return mesh;
 }
 
-// How many rays disagree with a ball of the given radius within the facets' depth below it.
+// The number of rays that disagree with a ball of the given radius within the facets' depth below it.
 std::size_t disagreements(const std::vector<ProbeRay>& rays, const std::vector<Hit>& hits, double radius,
                           double sagitta) {
     std::size_t count = 0;
@@ -66,7 +67,7 @@ std::size_t disagreements(const std::vector<ProbeRay>& rays, const std::vector<H
         const double r = glm::length(glm::dvec3(hits[k].position));
         const bool must_meet = passing < radius - sagitta;
         const bool may_meet = passing <= radius;
-        // Met between the ball and the ball that the facets enclose: so is the distance along the ray.
+        // A facet is met between the ball and the ball that the facets enclose, and so is the distance along the ray.
         const auto entry = [&](double ball) {
             return along - std::sqrt(std::max(ball * ball - passing * passing, 0.0));
         };
@@ -102,7 +103,7 @@ TEST(Traversal, AMeshIsMetLikeTheSphereItApproximates) {
     std::normal_distribution<float> normal;
     std::uniform_real_distribution<float> uniform;
     std::vector<ProbeRay> rays = rays_from_top(ball, 50'000, 0.3, 0.01, 18);
-    // And from all sides: from 0.09 mm off the centre towards a point of a slightly larger ball.
+    // Further rays come from all sides: from 0.09 mm off the centre towards a point of a slightly larger ball.
     for (int k = 0; k < 50'000; ++k) {
         const glm::vec3 from = glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));
         const glm::vec3 to = glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));
@@ -112,12 +113,12 @@ TEST(Traversal, AMeshIsMetLikeTheSphereItApproximates) {
         const auto hits = meet(ball, traversal, rays);
         EXPECT_GT(std::ranges::count(hits, 1u, &Hit::found), 50'000);
         EXPECT_EQ(disagreements(rays, hits, radius, sagitta), 0u);
-        // A ball larger by two depths of its facets is another one.
+        // The wrong twin is a ball larger by two depths of its facets.
         EXPECT_GT(disagreements(rays, hits, radius + 2 * sagitta, sagitta), rays.size() / 2);
     }
 }
 
-// From points within, up at every vertex and every edge's middle: those that the traversals do not try again.
+// Rays go from points within, up at every vertex and every edge's middle: those that the traversals do not try again.
 TEST(Traversal, AClosedMeshLetsNoRayThroughItsHierarchy) {
     specimen::Specimen ball{octahedral_sphere(0.05, 5), {}};
     auto& mesh = std::get<specimen::Mesh>(ball.geometry);
@@ -140,7 +141,7 @@ TEST(Traversal, AClosedMeshLetsNoRayThroughItsHierarchy) {
     EXPECT_GT(std::ranges::count(meet(ball, Traversal::bvh, rays), 0u, &Hit::found), 0);
 }
 
-// Slivers and crossing triangles of all sizes in a cube of 0.1 mm: what no grid of cells resembles.
+// A mesh of slivers and crossing triangles of all sizes in a cube of 0.1 mm: no grid of cells resembles it.
 specimen::Mesh thicket(std::size_t count, std::uint32_t seed) {
     std::mt19937 generator(seed);
     std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
@@ -158,7 +159,7 @@ specimen::Mesh thicket(std::size_t count, std::uint32_t seed) {
     return mesh;
 }
 
-// From all sides, also from within, towards points of a ball of 0.05 mm; the longest travel 0.3 mm.
+// Rays from all sides, also from within, towards points of a ball of 0.05 mm; the longest travel 0.3 mm.
 std::vector<ProbeRay> rays_from_all_sides(std::size_t count, std::uint32_t seed) {
     std::mt19937 generator(seed);
     std::normal_distribution<float> normal;

@@ -23,7 +23,8 @@ inline optics::InstrumentDescription microscope_description() {
     return description;
 }
 
-// Condenser, field stop and field lens without aberrations: the stop is imaged into the specimen sharply.
+// An illuminator of condenser, field stop and field lens without aberrations: the stop is imaged into the specimen
+// sharply.
 inline optics::Prescription ideal_illuminator() {
     optics::Prescription illuminator = optics::ideal_lens(26);
     illuminator.source_distance = 26;
@@ -40,7 +41,7 @@ inline optics::Prescription ideal_illuminator() {
 }
 
 // The microscope with lenses that have no aberrations. Each is one surface, so that rays take less time than in
-// microscope_description(): for tests of what does not depend on the lenses.
+// microscope_description(): for tests that do not depend on the lenses.
 inline optics::InstrumentDescription ideal_microscope_description() {
     optics::InstrumentDescription description = microscope_description();
     description.illumination = ideal_illuminator();
@@ -53,8 +54,8 @@ inline optics::Instrument microscope() {
     return optics::assemble(microscope_description());
 }
 
-// Rough enough that light meets it more than once. Only slopes above 3.5 turn back light that is within the pupil,
-// which steep_specimen() has.
+// A specimen so rough that light meets it more than once. Only slopes above 3.5 turn back light that is within the
+// pupil, which steep_specimen() has.
 inline specimen::Specimen rough_specimen(double g = 0.65, double sq = 0.003, double correlation_length = 0.012) {
     specimen::Rough rough;
     rough.size = 0.3;

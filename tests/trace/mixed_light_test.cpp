@@ -1,4 +1,4 @@
-// Light of several sources: the image is the sum of what each gives, forward and backward, on device and host.
+// The image of light of several sources is the sum of what each gives, forward and backward, on device and host.
 #include "trace/interface/light_sources.hpp"
 
 #include "trace/agreement.hpp"
@@ -68,7 +68,7 @@ trace::TraceOptions options(trace::Estimator estimator, std::uint64_t rays, std:
     return result;
 }
 
-// on_flat: of a wide lobe, for little noise; else of the rough specimen.
+// An image of a flat with a wide lobe, for little noise, or of the rough specimen.
 trace::Image expose(const optics::Instrument& instrument, const trace::TraceOptions& with, bool on_flat = false,
                     bool on_host = false) {
     static const auto rough = test::rough_specimen();
@@ -84,7 +84,7 @@ double variance(const trace::Image& image) {
                               image.standard_error.values.begin(), 0.0);
 }
 
-// Standard errors that the light of `whole` lies off that of the parts together.
+// The number of standard errors by which the light of `whole` is off that of the parts together.
 double apart(const trace::Image& whole, const std::vector<trace::Image>& parts) {
     double difference = total(whole.flux);
     double of_both = variance(whole);
@@ -97,8 +97,8 @@ double apart(const trace::Image& whole, const std::vector<trace::Image>& parts) 
 
 } // namespace
 
-// Energy: both estimators, in float on the device and in double on the host. Each with a wrong twin, whose ring light
-// is 5 % brighter, or forward, of few rays, 30 %.
+// Energy adds up with both estimators, in float on the device and in double on the host. Each wrong twin has a ring
+// light that is 5 % brighter, or forward, with few rays, 30 %.
 TEST(MixedLight, GivesTheSumOfItsSources) {
     const auto description = mixed_description();
     const auto mixed = optics::assemble(description);
@@ -139,7 +139,7 @@ TEST(MixedLight, IsTheSameForwardAndBackward) {
     const double p = agreement(forward, expose(mixed, options(trace::Estimator::backward, 1 << 19)));
     EXPECT_GT(p, level);
     EXPECT_LT(p, 1 - level);
-    // Wrong twin: a ring whose gaps stand elsewhere.
+    // The wrong twin is a ring whose gaps stand elsewhere.
     auto other = description;
     other.further_sources.front().ring->on = {true, true, true, false, false};
     EXPECT_LT(agreement(forward, expose(optics::assemble(other), options(trace::Estimator::backward, 1 << 19))), level);
@@ -156,7 +156,7 @@ TEST(MixedLight, IsTheSameForwardAndBackward) {
     EXPECT_NEAR(total(forward.flux), forward.ledger.entries.front().power, 1e-12);
 }
 
-// In the room of all elements: the ring's light may find the illuminator, so all have one list of ends.
+// In the room of all elements the ring's light may find the illuminator, so all sources have one list of ends.
 TEST(MixedLight, FindsItsOwnWayToo) {
     auto description = mixed_description();
     description.turned = false;
@@ -175,8 +175,8 @@ TEST(MixedLight, FindsItsOwnWayToo) {
     EXPECT_GT(apart(found, {expose(optics::assemble(brighter), with)}), largest_z);
 }
 
-// The same ring twice, in two colours, is one ring of two lines: geometry, best focus and dispersion are those of all
-// light together.
+// A ring twice, in two colours, is one ring of two lines: geometry, best focus and dispersion are those of all light
+// together.
 TEST(MixedLight, OfTwoColoursIsOneLightOfTwoLines) {
     auto description = mixed_description();
     optics::SourceDescription blue;
@@ -202,7 +202,7 @@ TEST(MixedLight, OfTwoColoursIsOneLightOfTwoLines) {
     const auto backward = options(trace::Estimator::backward, 1 << 18);
     const auto image = expose(both, backward);
     EXPECT_LT(apart(image, {expose(lines, options(trace::Estimator::backward, 1 << 18, 5))}), largest_z);
-    // Wrong twin: 5 % more light.
+    // The wrong twin has 5 % more light.
     one.source.flux = 5.25;
     EXPECT_GT(apart(image, {expose(optics::assemble(one), options(trace::Estimator::backward, 1 << 18, 5))}),
               largest_z);
@@ -222,7 +222,7 @@ TEST(MixedLight, RaysAreSharedOutAmongTheSources) {
     const auto parts = trace::one_by_one(mixed, with);
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_EQ(parts[0].options.rays + parts[1].options.rays, with.rays);
-    // Power a ray, of a Lambertian source that is aimed.
+    // The power of a ray of a Lambertian source that is aimed.
     const auto power = [](const trace::OneLight& part) {
         return part.instrument.flux * std::pow(part.instrument.constants.emission_sine, 2) /
                static_cast<double>(part.options.rays);
@@ -230,13 +230,13 @@ TEST(MixedLight, RaysAreSharedOutAmongTheSources) {
     EXPECT_NEAR(power(parts[0]) / power(parts[1]), 1, 0.01);
     EXPECT_EQ(parts[0].options.seed, with.seed);
     EXPECT_NE(parts[1].options.seed, with.seed); // else both would draw the same numbers
-    // Backward each is looked for by as many paths.
+    // Backward, each source is looked for by as many paths.
     with.estimator = trace::Estimator::backward;
     EXPECT_EQ(trace::one_by_one(mixed, with)[1].options.rays, 300'000u);
     EXPECT_EQ(trace::launched_rays(with, description), 2u * 256 * 2048);
 }
 
-// What the images depend on: another light of the second source is another identity, on host and device.
+// Another light of the second source is another identity, on host and device, since images depend on it.
 TEST(MixedLight, IdentityKnowsEverySource) {
     const auto specimen = test::rough_specimen();
     auto description = mixed_description();
@@ -256,7 +256,7 @@ TEST(MixedLight, IdentityKnowsEverySource) {
     }
 }
 
-// Two colours of bells that overlap: their shares, ends and mean.
+// Two colours are bells that overlap: the mixture has their shares, ends and mean.
 TEST(Spectrum, OfSeveralSourcesIsTheirMixture) {
     const auto blue = optics::Spectrum::gaussian(0.5, 0.05);
     const auto green = optics::Spectrum::gaussian(0.53, 0.04);

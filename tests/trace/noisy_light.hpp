@@ -9,7 +9,7 @@
 
 namespace vkfv::test {
 
-// Independent Poisson counts of this mean, the same at every call.
+// Independent Poisson counts of this mean, the same numbers at every call.
 inline std::vector<std::uint64_t> noisy_light(std::size_t numbers, double mean) {
     std::mt19937_64 random(1);
     std::poisson_distribution<std::uint64_t> count(mean);

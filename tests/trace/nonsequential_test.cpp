@@ -1,5 +1,5 @@
-// Light that finds its own way: the sequential image without Fresnel's reflections, closed forms with them, the ledger,
-// and the device against the host.
+// Light that finds its own way makes the sequential image without Fresnel's reflections, agrees with closed forms with
+// them, and closes the ledger; the device agrees with the host.
 #include "optics/instrument/room.hpp"
 #include "support/statistics.hpp"
 #include "trace/device/device_tracer.hpp"
@@ -29,9 +29,9 @@ TEST(Nonsequential, WithoutFresnelItGivesTheSequentialImage) {
     EXPECT_GT(by_bvh.detected, 5000u);
     const auto by_ray_query =
         trace::make_device_tracer(instrument, specimen, options(trace::Traversal::ray_query))->expose(0.001, 3);
-    // The same paths: but for those within float rounding of an edge, the same counts.
+    // The two traversals trace the same paths: the counts are the same but for paths within float rounding of an edge.
     EXPECT_NEAR(static_cast<double>(by_ray_query.detected), static_cast<double>(by_bvh.detected), 10);
-    // Wrong twin: a splitter of 0.35 / 0.65 passes 9 % less.
+    // The wrong twin is a splitter of 0.35 / 0.65, which passes 9 % less.
     auto other = description;
     other.splitter.reflectance = 0.35;
     other.splitter.transmittance = 0.65;
@@ -90,8 +90,8 @@ TEST(Nonsequential, FivePlatesPassWhatStokesSays) {
     EXPECT_GT(test::share_z(share * paths, paths, std::pow(1 - reflectance, 10)), 4);
 }
 
-// Light reflected twice inside a plate leaves parallel to what passes, t 2 cos(theta) tan(theta') beside it, with R^2
-// of its power; and twice as far with R^4.
+// Light reflected twice inside a plate leaves parallel to the light that passes, t 2 cos(theta) tan(theta') beside it,
+// with R^2 of its power; and twice as far with R^4.
 TEST(Nonsequential, ThePlatesGhostHasItsPlaceAndStrength) {
     constexpr double index = 2.0;
     constexpr double thickness = 3.0;
@@ -100,7 +100,7 @@ TEST(Nonsequential, ThePlatesGhostHasItsPlaceAndStrength) {
     Bench bench;
     bench.add_plate(optics::Pose{}.turned({.tilt_x = theta}), thickness, index);
     bench.add_detector(10);
-    // A turn of the plate about x leans its normal to -y: what passes is moved to -y, and each ghost further to +y.
+    // A turn of the plate about x leans its normal to -y: passing light is moved to -y, and each ghost further to +y.
     const double passes_at = -thickness * std::sin(theta - refracted) / std::cos(refracted);
     const double step = 2 * thickness * std::cos(theta) * std::tan(refracted);
     const double s = std::pow(std::sin(theta - refracted) / std::sin(theta + refracted), 2);
@@ -128,25 +128,25 @@ TEST(Nonsequential, ThePlatesGhostHasItsPlaceAndStrength) {
         EXPECT_NEAR(std::abs(place[order] / seen[order] - passes_at), static_cast<double>(order) * step, tolerance)
             << order;
     }
-    // Wrong twin: reflectance at normal incidence.
+    // The wrong twin has the reflectance at normal incidence.
     EXPECT_GT(test::share_z(seen[1], paths, through * std::pow(1.0 / 9, 2) * 1.1), 4);
 }
 
-// What lies beyond a lens' edge is its mount, and nothing passes beside the barrels to the detector.
+// Beyond a lens' edge lies its mount, and no light passes beside the barrels to the detector.
 TEST(Nonsequential, NothingPassesBesideTheLenses) {
     auto description = coarse_microscope();
     description.splitter.semi_diameter = 25;
     const auto instrument = optics::assemble(description);
     const auto room = optics::furnish(instrument);
     std::uint32_t reached = 0;
-    // Rays up from the specimen's plane at all angles, from beside the objective too.
+    // Rays go up from the specimen's plane at all angles, from beside the objective too.
     for (int i = 0; i < 40; ++i) {
         for (int j = -40; j <= 40; ++j) {
             const glm::dvec3 origin(0.05 + 0.5 * i, 0, 0);
             const double angle = j * 0.03;
             const glm::dvec3 direction(std::sin(angle), 0, std::cos(angle));
             const auto hit = optics::nearest_element(room, origin, direction, {-1, -1, -1});
-            // First to be met is the objective, never what stands behind it, unless the ray passes outside its barrel.
+            // Rays meet the objective first, never what stands behind it, unless the ray passes outside its barrel.
             if (hit.index >= 0 && room.names[static_cast<std::size_t>(hit.index)].starts_with("detector")) {
                 const double at_detector = origin.x + std::tan(angle) * 327;
                 EXPECT_GT(std::abs(origin.x + std::tan(angle) * 16), 7) << at_detector;

@@ -1,4 +1,4 @@
-// Host in double against device in float, path by path, and what the gate and the ledger promise.
+// The host in double and the device in float trace the same paths one by one, and gate and ledger keep their promises.
 #include "trace/device/device_tracer.hpp"
 #include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
@@ -92,7 +92,7 @@ TEST(Paths, HostAndDeviceTraceTheSamePaths) {
     }
 }
 
-// Wrong twin of the comparison: a device that traced other paths would be found out.
+// The wrong twin: a device that traced other paths would be found out.
 TEST(Paths, OtherPathsDoNotPassForTheSame) {
     const auto instrument = test::microscope();
     const auto specimen = test::rough_specimen();
@@ -105,7 +105,7 @@ TEST(Paths, OtherPathsDoNotPassForTheSame) {
     EXPECT_GT(differing, 200);
 }
 
-// Gate wide open: the same detections, one by one. A gate shrunk by a tenth loses some.
+// With the gate wide open the detections are the same, one by one. A gate shrunk by a tenth loses some.
 TEST(Paths, TheGateTurnsNoDetectedLightAway) {
     const auto instrument = test::microscope();
     const auto specimen = test::plane_specimen(0.3);

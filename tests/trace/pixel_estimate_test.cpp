@@ -1,4 +1,4 @@
-// From numbers that were counted to the light of pixels: in closed form, and on a device to the host's bits.
+// Numbers that were counted become the light of pixels: in closed form, and on a device to the host's bits.
 #include "trace/device/device_estimate.hpp"
 #include "trace/interface/wave_image.hpp"
 #include "trace/microscope.hpp"
@@ -21,7 +21,7 @@ estimate::EstimateRule rule_of(std::uint32_t kind, double count) {
     return {.kind = kind, .scale = 3.1e-9, .unit = 1.0 / 4194304, .unit_of_squares = 1.0 / 16777216, .count = count};
 }
 
-// Of all sizes up to 2^62, and none.
+// Random numbers of all sizes up to 2^62, and a zero.
 std::vector<std::uint64_t> random_numbers(std::size_t count) {
     std::mt19937_64 random(5);
     std::vector<std::uint64_t> numbers(count);
@@ -51,7 +51,7 @@ Estimate::Estimated found_by(const vulkan::Device& device, const Estimate& estim
 } // namespace
 
 TEST(PixelEstimate, OfCountsIsThatOfSoManyOfTheRays) {
-    // N of n rays: mean scale N, variance N (1 - N / n).
+    // With N of n rays the mean is scale N, the variance N (1 - N / n).
     const std::vector<std::uint64_t> counts = {0, 400, 1'000'000};
     const auto light = trace::estimate_pixels(rule_of(estimate::ESTIMATE_COUNTS, 1'000'000), ImageSize{3, 1}, counts);
     EXPECT_EQ(light.flux.values, (std::vector<double>{0, 3.1e-9 * 400, 3.1e-9 * 1'000'000}));
@@ -61,7 +61,7 @@ TEST(PixelEstimate, OfCountsIsThatOfSoManyOfTheRays) {
 }
 
 TEST(PixelEstimate, OfWeightsIsThatOfRaysWithTheseWeights) {
-    // Weights 1/2, 1/2 and 2: sum 3, squares 4.5, in their units.
+    // Weights of 1/2, 1/2 and 2 have the sum 3 and the sum of squares 4.5, in their units.
     const std::vector<std::uint64_t> numbers = {3u << 22, 75'497'472};
     const auto light = trace::estimate_pixels(rule_of(estimate::ESTIMATE_WEIGHTS, 90), ImageSize{1, 1}, numbers);
     EXPECT_EQ(light.flux.values[0], 3.1e-9 * 3);
@@ -112,7 +112,7 @@ TEST(PixelEstimate, HasTheSameBitsByTheDeviceAndByTheHost) {
     }
 }
 
-// Whose pixels need more workgroups than a row of them holds.
+// The pixels of a large detector need more workgroups than a row of them holds.
 TEST(PixelEstimate, ReachesEveryPixelOfALargeDetector) {
     const vulkan::Device device;
     constexpr ImageSize large{3000, 2800};
@@ -166,7 +166,7 @@ TEST(PixelEstimate, OfWavesIsTheirLightWithTheNoiseThatFilteringLeaves) {
                 EXPECT_EQ(found.power, power ? rays.power : std::nullopt); // as rays bring it
                 EXPECT_EQ(found.pixels.standard_error.values, expected.standard_error.values);
                 for (std::size_t pixel = 0; pixel < pixels.count(); ++pixel) {
-                    // Waves made by the device are in float.
+                    // The waves that the device makes are in float.
                     ASSERT_NEAR(found.pixels.flux.values[pixel] / expected.flux.values[pixel], 1,
                                 waves.on_device() ? 2e-6 : 0)
                         << pixel;

@@ -1,7 +1,8 @@
-// Float on the device against double on the host, in object space, for every microscope of the library: at most 1 nm
-// rms and 5 nm at worst (the 5x: 1.3 and 8, see bounds()), and the same ends. Both begin at the same numbers, so what
-// differs is rounding on the way and in the prescription. Field: the detector of bench_paper_chain.toml, 8 mm square,
-// with its field stop and beam-splitter cube (the microscope_*.toml have 1.28 mm, which is within it).
+// Float on the device differs from double on the host, in object space and for every microscope of the library, by at
+// most 1 nm rms and 5 nm at worst (the 5x: 1.3 and 8, see bounds()), and has the same ends. Both begin at the same
+// numbers, so the difference is rounding on the way and in the prescription. The field is the detector of
+// bench_paper_chain.toml, 8 mm square, with its field stop and beam-splitter cube (the microscope_*.toml have 1.28 mm,
+// which is within it).
 #include "trace/device/ray_trace.hpp"
 #include "trace/microscope.hpp"
 
@@ -45,7 +46,7 @@ Ray start(double x, double y, double z, double l, double m) {
     return ray;
 }
 
-// Uniform over a square field or a round source, and over the directions of an aim.
+// Rays uniform over a square field or a round source, and over the directions of an aim.
 template <class Accept>
 std::vector<Ray> filling(std::size_t count, double reach, double height, double sine, double shift, Accept accept) {
     std::mt19937_64 generator(17);
@@ -132,7 +133,7 @@ void expect_precise(const optics::Instrument& instrument, Train train, const std
     for (const std::size_t ray : found.differing) {
         EXPECT_TRUE(passes_within_rounding(instrument, train, rays[ray], rounded[ray])) << "ray " << ray;
     }
-    // Wrong twin: light that lands a little to the side in the object is seen.
+    // The wrong twin: light that lands a little to the side in the object is seen.
     const double aside = bounds.rms < 2 * nm ? 2 * nm : 2 * bounds.rms;
     auto beside = exact;
     for (trace::TracedRay& ray : beside) {
@@ -174,7 +175,7 @@ TEST_P(IlluminationPrecision, OfTheIlluminationTrainInFloat) {
                 -constants.source_distance, constants.emission_sine, constants.emission_shift,
                 [](double x, double y) { return x * x + y * y <= 1; });
     expect_precise(instrument, Train::illumination, rays, 1, bounds(GetParam()), 0);
-    // Where a tenth of a micrometre is enough.
+    // Here a tenth of a micrometre is enough.
     expect_precise(instrument, Train::illumination, rays, 1, {.rms = 20 * nm, .worst = 100 * nm},
                    physics::f64::SHORT_TRAIN_PLAIN);
 }

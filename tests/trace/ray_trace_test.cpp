@@ -1,4 +1,4 @@
-// --trace-rays through every microscope of the library: float on the device against double on the host.
+// --trace-rays through every microscope of the library gives on the device in float what the host gives in double.
 #include "trace/device/ray_trace.hpp"
 #include "trace/microscope.hpp"
 
@@ -24,14 +24,14 @@ optics::InstrumentDescription described(const Microscope& microscope) {
     description.objective = optics::load_prescription(microscope.objective, "objectives", base);
     description.tube_lens = optics::load_prescription(microscope.tube_lens, "tube_lenses", base);
     description.detector_width = 8; // mm: a common sensor
-    // The imaging is what is traced; a ring light needs no illuminator to be fitted to the objective.
+    // Only the imaging is traced; a ring light needs no illuminator to be fitted to the objective.
     description.source.ring = optics::RingLightDescription{
         .distance = 30, .elevation = 0.5, .width = 1, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.1};
     return description;
 }
 
-// From all over the detector's field, filling the numerical aperture and a little more, from 20 um about the object
-// plane.
+// Rays from all over the detector's field, filling the numerical aperture and a little more, from 20 um about the
+// object plane.
 std::vector<trace::RayInput> filling_rays(const optics::Instrument& instrument) {
     std::mt19937_64 generator(17);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -76,7 +76,7 @@ TEST_P(RayTrace, InFloatAgreesWithDouble) {
     EXPECT_LT(worst, 0.5e-3); // 0.5 um at the detector
     EXPECT_GT(worst, 1e-7);   // it was not double on both
     EXPECT_LE(differing, 1);  // one ray of 1000 may pass within float's 1e-6 mm of an edge
-    // Wrong twin: an object 1 um of the image to the side is seen.
+    // The wrong twin: an object 1 um of the image to the side is seen.
     auto beside = rays;
     for (trace::RayInput& ray : beside) {
         ray.x += 1e-3 / std::abs(instrument.first_order.magnification);

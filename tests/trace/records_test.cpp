@@ -1,4 +1,4 @@
-// The records as the shaders see them against the records as the host writes them, field by field.
+// The records as the shaders see them are the records as the host writes them, field by field.
 #include "trace/interface/device_records.hpp"
 #include "vulkan/kernel.hpp"
 

@@ -1,5 +1,5 @@
-// Maps of reflectance in the trace: closed forms on a flat, and the estimators, traversals, modes and the host against
-// each other.
+// Maps of reflectance in the trace agree with closed forms on a flat; the estimators, traversals, modes and the host
+// agree with each other.
 #include "support/statistics.hpp"
 #include "trace/agreement.hpp"
 #include "trace/device/device_tracer.hpp"
@@ -25,8 +25,8 @@ constexpr double level = 1e-3; // false-positive rate of each chi-square test he
 
 constexpr double field = 0.032; // mm
 
-// 16 pixels of 2 um in the object, and not much light beside them. Without aberrations an image in focus is the
-// object's mean over the pixels.
+// An instrument of 16 pixels of 2 um in the object, with not much light beside them. Without aberrations an image in
+// focus is the object's mean over the pixels.
 optics::Instrument ideal_microscope() {
     auto description = test::ideal_microscope_description();
     description.field_stop_radius = 0.18;
@@ -100,7 +100,7 @@ specimen::Specimen with_map(specimen::Specimen specimen, const specimen::Reflect
     return specimen;
 }
 
-// Whole periods in the field: 3 along x and 4 along y.
+// The grating has whole periods in the field: 3 along x and 4 along y.
 constexpr int periods_x = 3, periods_y = 4;
 constexpr double lowest = 0.05, highest = 0.95;
 constexpr double origin_x = 0.0013, origin_y = -0.0007;
@@ -124,8 +124,8 @@ specimen::Reflectance texture(std::uint32_t seed = 1) {
             .seed = seed};
 }
 
-// Of the image over that of the bare flat: the coefficient of so many periods in the field, and the standard error of
-// its parts.
+// The Fourier coefficient of so many periods in the field, of the image over that of the bare flat, and the standard
+// error of its parts.
 struct Coefficient {
     std::complex<double> value;
     double error = 0;
@@ -154,7 +154,7 @@ Coefficient coefficient(const trace::Image& image, const trace::Image& bare, int
     return result;
 }
 
-// The mean and the fundamental of the grating, which pixels average.
+// Expects the mean and the fundamental of the grating, which pixels average.
 void expect_closed_form(const trace::Image& image, const trace::Image& bare, double further_error) {
     const auto sinc = [](double periods) { return std::sin(pi * periods / 16) / (pi * periods / 16); };
     const auto fundamental = 0.25 * (highest - lowest) * sinc(periods_x) * sinc(periods_y) *
@@ -169,7 +169,7 @@ void expect_closed_form(const trace::Image& image, const trace::Image& bare, dou
     EXPECT_GT(std::abs(fundamental), 4 * bound) << "nothing is told apart";
 }
 
-// Sum of the pixels' differences as a share of the light.
+// The sum of the pixels' differences as a share of the light.
 double difference(const trace::Image& one, const trace::Image& other) {
     double sum = 0;
     for (std::size_t k = 0; k < one.flux.values.size(); ++k) {
@@ -180,7 +180,7 @@ double difference(const trace::Image& one, const trace::Image& other) {
 
 } // namespace
 
-// Backward paths of the same points: pixels of the bare flat divide the illumination out.
+// Backward paths have the same points with and without the map: pixels of the bare flat divide the illumination out.
 TEST(ReflectanceMap, AGratingOnEveryKindOfSpecimenAndInEveryTraversalHasItsClosedForm) {
     const auto instrument = ideal_microscope();
     const auto quadtree = way("quadtree", Estimator::backward, 1 << 14, Traversal::quadtree);
@@ -216,7 +216,7 @@ TEST(ReflectanceMap, ForwardPathsOfEveryFormHaveTheClosedForm) {
     }
 }
 
-// By ray queries the same paths as by the hierarchy of boxes, but for those within rounding of an edge.
+// Ray queries trace the same paths as the hierarchy of boxes, but for those within rounding of an edge.
 TEST(ReflectanceMap, NonsequentialPathsMeetTheSameMapByRayQuery) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(mesh_flat(), grating());
@@ -228,7 +228,7 @@ TEST(ReflectanceMap, NonsequentialPathsMeetTheSameMapByRayQuery) {
     EXPECT_LT(difference(boxes, by(Traversal::ray_query)), 0.02);
 }
 
-// The wrong twin: the angle the other way is told by every way.
+// The wrong twin has the angle the other way, which every way of tracing tells.
 TEST(ReflectanceMap, AnotherAngleHasNoSuchFrequency) {
     const auto instrument = ideal_microscope();
     const auto by = way("backward", Estimator::backward, 1 << 16);
@@ -238,8 +238,8 @@ TEST(ReflectanceMap, AnotherAngleHasNoSuchFrequency) {
     EXPECT_GT(std::abs(coefficient(twin, bare, periods_x, -periods_y).value), 0.1);
 }
 
-// Up to four bounces on facets so steep that light meets them again, a mixture of lobes: forward, which counts what the
-// map absorbs, against backward, which multiplies by the map.
+// With up to four bounces on facets so steep that light meets them again, and a mixture of lobes, forward, which counts
+// what the map absorbs, agrees with backward, which multiplies by the map.
 TEST(ReflectanceMap, EstimatorsAgreeWhereLightIsScatteredAgain) {
     const auto instrument = ideal_microscope();
     auto steep = test::steep_specimen(0.65);
@@ -253,14 +253,14 @@ TEST(ReflectanceMap, EstimatorsAgreeWhereLightIsScatteredAgain) {
                                directed(way("directed", Estimator::forward, 400'000, Traversal::quadtree, 4)), 0.002),
                         reference),
               level);
-    // Wrong twins: another texture of the same statistics, and none but a reflectance of its mean.
+    // The wrong twins are another texture of the same statistics, and no map but a reflectance of its mean.
     EXPECT_LT(agreement(expose(instrument, with_map(steep, texture(2)), forward, 0.002), reference), level);
     auto even = texture();
     even.standard_deviation = 0;
     EXPECT_LT(agreement(expose(instrument, with_map(steep, even), forward, 0.002), reference), level);
 }
 
-// The same paths in every traversal and on the host: what differs are those within rounding of an edge.
+// Every traversal and the host trace the same paths: only those within rounding of an edge differ.
 TEST(ReflectanceMap, HostAndEveryTraversalTraceTheSamePaths) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(test::steep_specimen(0.65), texture());
@@ -271,7 +271,7 @@ TEST(ReflectanceMap, HostAndEveryTraversalTraceTheSamePaths) {
     for (const auto traversal : {Traversal::quadtree, Traversal::bvh, Traversal::ray_query}) {
         EXPECT_LT(difference(host, by(traversal)), 5e-3);
     }
-    // Little roughness and a narrow lobe, so that much of the light returns.
+    // The specimen has little roughness and a narrow lobe, so that much of the light returns.
     const auto smooth = test::rough_specimen(0.95, 0.0002);
     const auto forward = way("forward", Estimator::forward, 50'000, Traversal::quadtree, 3);
     const auto of_device = expose(instrument, with_map(smooth, texture()), forward, 0.002);
@@ -282,7 +282,7 @@ TEST(ReflectanceMap, HostAndEveryTraversalTraceTheSamePaths) {
     EXPECT_GT(difference(of_host, other), 0.1); // wrong twin
 }
 
-// What the map takes is absorbed: its mean of what arrives, and the ledger closes.
+// The light that the map takes is absorbed: one minus its mean of what arrives, and the ledger closes.
 TEST(ReflectanceMap, TheLedgerCountsWhatTheMapAbsorbs) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(analytic_flat(), grating());

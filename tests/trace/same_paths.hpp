@@ -1,4 +1,4 @@
-// The device's float against the host's double, path by path, of light without a given sequence.
+// Compares paths of light without a given sequence in the device's float with those in the host's double.
 #pragma once
 
 #include "trace/alike_paths.hpp"

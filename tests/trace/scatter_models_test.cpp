@@ -1,5 +1,5 @@
-// Scatter models in the trace, several in one material: the device in float against the host in double, forward against
-// backward, and what the wavelength makes of a material against closed forms.
+// With several scatter models in one material the device in float agrees with the host in double, forward with
+// backward, and the effect of the wavelength on a material with closed forms.
 #include "specimen/tabulated_bsdf.hpp"
 #include "trace/agreement.hpp"
 #include "trace/alike_paths.hpp"
@@ -23,7 +23,7 @@ constexpr double level = 1e-3; // false-positive rate of each chi-square test he
 
 const std::vector<double> lines_um = {0.45, 0.65}, fluxes = {0.3, 0.7};
 
-// 16 pixels of 2 um in the object; lenses without aberrations, and light of two wavelengths.
+// An instrument of 16 pixels of 2 um in the object, with lenses without aberrations, and light of two wavelengths.
 optics::Instrument ideal_microscope(bool coloured = true) {
     auto description = test::ideal_microscope_description();
     description.field_stop_radius = 0.18;
@@ -64,7 +64,7 @@ specimen::Specimen flat(const specimen::Material& material) {
     return {plane, material};
 }
 
-// Reciprocal: a sum of products of the same function of both angles.
+// A reciprocal table: a sum of products of the same function of both angles.
 specimen::TabulatedBsdf table() {
     specimen::TabulatedBsdf bsdf;
     for (int k = 0; k <= 9; ++k) {
@@ -84,7 +84,7 @@ specimen::TabulatedBsdf table() {
     return bsdf;
 }
 
-// All models that have a density, of 0.9 together; the share of the first is what twins change.
+// All models that have a density, with a weight of 0.9 together; twins change the share of the first.
 specimen::Material mixture(double compensated = 0.25) {
     specimen::Material material{{{"ggx-multiple-scatter", compensated, {0.4}},
                                  {"harvey-shack", 0.25, {0.1, -1.5}},
@@ -97,7 +97,7 @@ specimen::Material mixture(double compensated = 0.25) {
     return material;
 }
 
-// With a delta besides.
+// A material with a mirror, a delta, besides.
 specimen::Material with_mirrors() {
     return {{{"abg", 0.4, {0.01, 1.5}}, {"conductor", 0.5, {0.27, 2.95}}}};
 }
@@ -135,7 +135,7 @@ TEST(ScatterModels, HostAndDeviceScatterEachPathAlike) {
     }
 }
 
-// Backward is the wrong way round for what is not reciprocal, or not what the sampler draws.
+// Backward makes another image of a model that is not reciprocal, or whose sampler draws another density.
 TEST(ScatterModels, ForwardAndBackwardMakeOneImage) {
     const auto instrument = ideal_microscope();
     const auto backward_of = [&](const specimen::Material& material, std::uint64_t rays, bool host = false) {
@@ -161,13 +161,13 @@ TEST(ScatterModels, ForwardAndBackwardMakeOneImage) {
     }
 }
 
-// By the host: its paths are the device's.
+// The images are traced on the host, whose paths are the device's.
 TEST(ScatterModels, AReflectanceByWavelengthTakesItsShareOfEachLine) {
     const auto instrument = ideal_microscope();
     specimen::Material white{{{"lambertian", 1, {}}}};
     specimen::Material coloured = white;
     coloured.lobes[0].reflectance = {{0.4, 0.5, 0.75}, {0.9, 0.5, 0.25}};
-    // Linear between the points: 0.7 at 0.45 um and 0.35 at 0.65 um.
+    // The reflectance is linear between the points: 0.7 at 0.45 um and 0.35 at 0.65 um.
     const double wanted = fluxes[0] * 0.7 + fluxes[1] * 0.35;
     const auto share = share_of(expose(instrument, flat(coloured), Estimator::backward, 1 << 14, true),
                                 expose(instrument, flat(white), Estimator::backward, 1 << 14, true));

@@ -1,4 +1,4 @@
-// Kernels in the form for software devices, whose loops ask at their ends too, and in the form for GPUs: the same bits.
+// Kernels in the form for software devices, whose loops ask at their ends too, give the bits of the form for GPUs.
 #include "trace/device/device_tracer.hpp"
 #include "trace/microscope.hpp"
 
@@ -13,7 +13,7 @@ trace::Image expose(const optics::Instrument& instrument, trace::TraceOptions wi
     return trace::make_device_tracer(instrument, test::steep_specimen(0.65), with)->expose(0.002, 1);
 }
 
-// Of an image and of its wrong twin, which another seed gives.
+// The two forms give the same bits of an image; another seed, the wrong twin, gives others.
 void expect_same_bits(const optics::Instrument& instrument, const trace::TraceOptions& with) {
     const auto software = expose(instrument, with, true);
     const auto gpu = expose(instrument, with, false);

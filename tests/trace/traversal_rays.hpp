@@ -113,14 +113,14 @@ class RandomWaves {
     double amplitude_ = 0;
 };
 
-// 512 x 512 points over 0.2 mm, 4 um of relief, slopes up to about 1: light at NA 0.4 is shadowed here and
-// there.
+// A field of 512 x 512 points over 0.2 mm, with 4 um of relief and slopes up to about 1: light at NA 0.4 is shadowed
+// here and there.
 inline const specimen::Specimen& rough() {
     static const specimen::Specimen surface{make_field(512, 0.2 / 511, RandomWaves(0.0006, 0.01, 5)), {}};
     return surface;
 }
 
-// From the top plane down, uniform over the footprint widened by `margin` on each side and over the pupil.
+// Rays from the top plane down, uniform over the footprint widened by `margin` on each side and over the pupil.
 inline std::vector<ProbeRay> rays_from_top(const specimen::Specimen& specimen, std::size_t count, double aperture,
                                            double margin, std::uint32_t seed) {
     const auto record = specimen::record(specimen, 1);
@@ -138,7 +138,7 @@ inline std::vector<ProbeRay> rays_from_top(const specimen::Specimen& specimen, s
     return rays;
 }
 
-// From hits on the surface, over the hemisphere of the normal as a Lambertian scatterer sends light.
+// Rays from hits on the surface, over the hemisphere of the normal as a Lambertian scatterer sends light.
 inline std::vector<ProbeRay> scattered_rays(const std::vector<Hit>& hits, std::uint32_t seed) {
     std::mt19937 generator(seed);
     std::normal_distribution<float> normal;
@@ -153,14 +153,14 @@ inline std::vector<ProbeRay> scattered_rays(const std::vector<Hit>& hits, std::u
     return rays;
 }
 
-// Four rounding steps (2^-23) of the largest coordinate of a footprint of 0.2 mm: what the device calls
-// rounding.
+// The lengths that the device calls rounding: four rounding steps (2^-23) of the largest coordinate of a footprint of
+// 0.2 mm.
 inline constexpr double rounding = 4 * 0x1p-23 * 0.1;
 
 // Vertices are rounded to 2^-24 of 0.1 mm: a facet 0.39 um wide turns by that over its width.
 inline constexpr double turn_by_rounding = 8 * 0x1p-24 * 0.1 / (0.2 / 511);
 
-// May a ray so close to this one, in double, end in the given way? Where a ray grazes a crest, passes the
+// Whether a ray so close to this one, in double, may end in the given way. Where a ray grazes a crest, passes the
 // border of the footprint or starts beside a crease, both ways are right within rounding.
 inline bool within_rounding(const specimen::Intersector& reference, const ProbeRay& ray, const Hit& hit) {
     for (int k = 0; k < 26; ++k) {

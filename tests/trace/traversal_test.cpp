@@ -1,4 +1,4 @@
-// The traversals against each other and against the host's reference in double, on height fields.
+// The traversals agree with each other and with the host's reference in double, on height fields.
 #include "traversal_rays.hpp"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ TEST(Traversal, ScatteredLightIsMetAlike) {
     const auto ray_query = meet(rough(), Traversal::ray_query, rays);
     const auto bvh = meet(rough(), Traversal::bvh, rays);
     const auto expected = meet(reference, rays);
-    // Few leave so flat that they meet the surface again; but some must, or nothing is tested.
+    // Few rays leave so flat that they meet the surface again; but some must, or nothing is tested.
     EXPECT_GT(compare(reference, rays, quadtree, ray_query, nm).both, rays.size() / 100);
     for (const Comparison& seen :
          {compare(reference, rays, quadtree, ray_query, nm), compare(reference, rays, quadtree, expected, nm),
@@ -89,7 +89,7 @@ TEST(Traversal, ScatteredLightIsMetAlike) {
 }
 
 TEST(Traversal, LightFromTheSideIsMetAlike) {
-    // Low over the surface, and from beside it between its lowest and highest point: above it or below.
+    // Rays go low over the surface, and start beside it between its lowest and highest point: above it or below.
     const specimen::Intersector reference(rough());
     const auto record = specimen::record(rough(), 1);
     std::mt19937 generator(6);
@@ -99,7 +99,8 @@ TEST(Traversal, LightFromTheSideIsMetAlike) {
         const double angle = two_pi * uniform(generator);
         const glm::dvec2 across(std::cos(angle), std::sin(angle));
         const double z = record.bottom + uniform(generator) * (record.top - record.bottom);
-        // Towards a place over the footprint, within 6 degrees of the plane, from further away than it is wide.
+        // A ray goes towards a place over the footprint, within 6 degrees of the plane, from further away than it is
+        // wide.
         const glm::dvec2 target(0.1 * (2 * uniform(generator) - 1), 0.1 * (2 * uniform(generator) - 1));
         const double rise = 0.1 * (2 * uniform(generator) - 1);
         rays.push_back({glm::vec3(target - 0.3 * across, z - 0.25 * rise), glm::normalize(glm::vec3(across, rise))});
@@ -117,8 +118,8 @@ TEST(Traversal, LightFromTheSideIsMetAlike) {
 }
 
 TEST(Traversal, SteepLightLeavesTheSurface) {
-    // Steeper than any slope of the surface: nothing may be in the way, least of all the facet it starts
-    // from.
+    // Rays are steeper than any slope of the surface: nothing may be in the way, least of all the facet from which they
+    // start.
     const auto down = rays_from_top(rough(), 100'000, 0.4, 0, 5);
     std::vector<ProbeRay> rays;
     for (const Hit& hit : meet(rough(), Traversal::quadtree, down)) {
@@ -133,7 +134,7 @@ TEST(Traversal, SteepLightLeavesTheSurface) {
 }
 
 TEST(Traversal, NoRayAtAVertexOrAnEdgeIsLost) {
-    // Down at every vertex, at the middle of edges and along rows, columns and diagonals; on a flat specimen,
+    // Rays go down at every vertex, at the middle of edges and along rows, columns and diagonals; on a flat specimen,
     // whose top plane is the surface itself, too.
     const specimen::Specimen flat{make_field(129, 0.001, [](double, double) { return 0.0; }), {}};
     const specimen::Specimen hills{make_field(129, 0.001, RandomWaves(0.0005, 0.01, 7)), {}};
@@ -163,7 +164,7 @@ TEST(Traversal, NoRayAtAVertexOrAnEdgeIsLost) {
 }
 
 TEST(Traversal, ARayFromAfarIsMetAsOnTheHost) {
-    // At vertices and middles of edges around the centre, from 10 mm away.
+    // Rays go at vertices and middles of edges around the centre, from 10 mm away.
     const specimen::Specimen hills{make_field(129, 0.001, RandomWaves(0.0005, 0.01, 7)), {}};
     const auto& field = std::get<specimen::HeightField>(hills.geometry);
     std::vector<ProbeRay> rays;

@@ -11,7 +11,7 @@
 namespace vkfv::trace {
 namespace {
 
-// Corners in some fixed order, so that triangles compare however they go round.
+// The corners of a triangle in some fixed order, so that triangles compare however they go round.
 using Corners = std::array<std::array<float, 3>, 3>;
 
 Corners sorted(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
@@ -72,7 +72,7 @@ TEST(TrianglePairs, HoldEveryTriangleOnce) {
     }
     const auto pairs = pair_triangles(mesh.vertices, mesh.triangles);
     EXPECT_EQ(all(pairs), mesh.all());
-    // Some are left over, whose neighbours all went to others: 40 % more than half as many pairs at most.
+    // Some triangles are left over, whose neighbours all went to others: 40 % more than half as many pairs at most.
     EXPECT_LT(pairs.size(), 560u);
     mesh.triangles.pop_back();
     EXPECT_NE(all(pairs), mesh.all());
@@ -87,7 +87,7 @@ TEST(TrianglePairs, HoldEveryTriangleOfManyOnce) {
 }
 
 TEST(TrianglePairs, TakeThePartnerThatMakesTheSmallestBox) {
-    // Two triangles at the middle one's sides, the second far away.
+    // Two triangles stand at the middle one's sides, the second far away.
     const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 9, 9}, {1, 1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 2, 4}}};
     const auto pairs = pair_triangles(mesh.vertices, mesh.triangles);
     ASSERT_EQ(pairs.size(), 2u);
@@ -97,7 +97,7 @@ TEST(TrianglePairs, TakeThePartnerThatMakesTheSmallestBox) {
 }
 
 TEST(TrianglePairs, TakeWhatIsNoSurface) {
-    // The same twice, three at an edge; and what has no extent must not disturb the others.
+    // A triangle may come twice, and three may share an edge; triangles without extent must not disturb the others.
     Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {7, 7, 7}},
               {{0, 1, 2}, {0, 1, 2}, {0, 1, 3}, {0, 1, 4}}};
     EXPECT_EQ(all(pair_triangles(mesh.vertices, mesh.triangles)), mesh.all());

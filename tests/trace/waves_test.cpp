@@ -1,4 +1,4 @@
-// The image that waves make of light sorted by pupil cells.
+// Waves make images of light sorted by pupil cells with the contrast of the scalar Debye integral.
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
 #include "optics/prescriptions/ideal_lens.hpp"
@@ -40,7 +40,7 @@ double variance(std::span<const double> values) {
     return squares / static_cast<double>(values.size() - 1);
 }
 
-// Of the cells' images, all light of a pixel.
+// The sum of the cells' images: all light of each pixel.
 Grid<double> unfiltered(std::span<const std::uint64_t> light, int pixels, int parts, int cells) {
     Grid<double> image(pixels, pixels);
     const int side = pixels * parts;
@@ -79,7 +79,8 @@ optics::Instrument turned_microscope() {
     return optics::assemble(description);
 }
 
-// H at s of the cutoff (scalar Debye integral) with the object z mm from focus: a sum over the overlap of two pupils.
+// The contrast H at s of the cutoff (scalar Debye integral) with the object z mm from focus: a sum over the overlap of
+// two pupils.
 double debye_transfer(double aperture, double wavelength, double s, double z) {
     constexpr int half = 300;
     const double k = 2 * pi / wavelength;
@@ -103,8 +104,7 @@ double debye_transfer(double aperture, double wavelength, double s, double z) {
 constexpr double grating_wavelength = 0.55e-3;
 constexpr int grating_pixels = 32;
 
-// An ideal lens, pixels of an eighth of the shortest wave that it passes.
-// tilt: of the detector, rad.
+// An ideal lens with pixels of an eighth of the shortest wave that it passes; `tilt` is that of the detector in rad.
 optics::InstrumentDescription ideal_description(double aperture, double tilt = 0) {
     auto description = test::ideal_microscope_description();
     const double focal_length = aperture > 0.5 ? 4 : 20;
@@ -122,7 +122,7 @@ optics::Instrument ideal_microscope(double aperture, double tilt = 0) {
     return optics::assemble(ideal_description(aperture, tilt));
 }
 
-// A level Lambertian flat with a grating of reflectance; period: mm, angle: rad.
+// A level Lambertian flat with a grating of reflectance, `period` in mm and `angle` in rad.
 specimen::Specimen flat_with_grating(double period, double angle) {
     specimen::Analytic plane;
     plane.x_min = plane.y_min = -0.1;
@@ -185,7 +185,7 @@ TEST(Waves, GiveGratingsTheContrastOfTheDebyeIntegral) {
                 EXPECT_NEAR(grating_contrast(image.flux, period, angle, pitch), expected, waves == 0 ? 0.015 : 0.045)
                     << aperture << ' ' << s << ' ' << waves;
                 if (s == 0.5 && waves > 0) {
-                    // The twin: rays, and the Airy transfer of focus at this height too.
+                    // The wrong twins are rays, and the Airy transfer of focus at this height too.
                     options.waves.reset();
                     const auto rays = trace::make_device_tracer(instrument, specimen, options)->expose(z, 1);
                     const double blurred =
@@ -215,8 +215,8 @@ TEST(Waves, FollowADetectorThatIsTilted) {
     }
 }
 
-// H on the axis of the 10x for waves of 2.5 um, of a flat below, at and above best focus:
-// tests/references/wavefront_reference.py, transfer(). By rays alone it is 0.29, 0.69, 0.29.
+// tests/references/wavefront_reference.py, transfer(), gives the contrast H on the axis of the 10x for waves of 2.5 um,
+// of a flat below, at and above best focus. By rays alone it is 0.29, 0.69, 0.29.
 TEST(Waves, GiveGratingsTheContrastOfAnAberratedObjective) {
     auto description = test::microscope_description();
     constexpr double period = 2.5e-3;
@@ -250,28 +250,29 @@ TEST(Waves, TakeFewerPartsWhereTheDeviceCannotHoldThem) {
     EXPECT_EQ(parts({}), 3);
     EXPECT_EQ(trace::waves_on_device({}, coarse, device).cells, 8);
     EXPECT_EQ(trace::waves_on_device({.cells = 10}, coarse, device).cells, 10);
-    // 8 bytes a cell and part: 64 x 32^2 x 3^2 cells.
+    // A cell and part takes 8 bytes: 64 x 32^2 x 3^2 cells.
     const auto memory =
         trace::wave_memory({.cells = 8, .parts = 3, .tiles = 1, .pixels = ImageSize::square(grating_pixels)});
     EXPECT_EQ(memory.light, 8u * 64 * 32 * 32 * 9);
     EXPECT_EQ(parts({.most_memory = memory.all()}), 3);
     EXPECT_EQ(parts({.most_memory = memory.all() - 1}), 2);
-    // The cells' images lie in as many buffers as they need, 128 bytes less than an allocation each. In one must fit
-    // what is transformed at once, the image with its mirror images: 8 bytes for each of four times the parts.
+    // The cells' images lie in as many buffers as they need, 128 bytes less than an allocation each. The light that is
+    // transformed at once must fit in one, the image with its mirror images: 8 bytes for each of four times the parts.
     const std::uint64_t image = 4 * memory.light / 64;
     device.max_allocation_bytes = image + 128;
     EXPECT_EQ(parts({}), 3);
     device.max_allocation_bytes = image + 127;
     EXPECT_EQ(parts({}), 2);
-    // What is asked for is not changed behind the asker's back.
+    // Parts that are asked for are not changed behind the asker's back.
     EXPECT_THROW(parts({.parts = 3}), InputError);
     EXPECT_EQ(parts({.parts = 2}), 2);
     device.memory_bytes = 1000;
     EXPECT_THROW(parts({}), InputError);
 }
 
-// Of limits as lavapipe has them. What the host transforms no kernel is given: 800 x 800 pixels needed 164 MB in one
-// binding of 134 MB, and 2448 x 2048 pixels need 2.6 GB of light, which is more than one allocation gives.
+// The device has limits as lavapipe's. Light that the host transforms is given to no kernel: 800 x 800 pixels needed
+// 164 MB in one binding of 134 MB, and 2448 x 2048 pixels need 2.6 GB of light, which is more than one allocation
+// gives.
 TEST(Waves, OfManyPixelsFitWhereTheyAreTiled) {
     auto instrument = ideal_microscope(0.28);
     vulkan::DeviceReport device;
@@ -317,7 +318,8 @@ TEST(Waves, OfManyPixelsFitWhereTheyAreTiled) {
                 AllOf(HasSubstr("40108032 bytes of light for each cell"), HasSubstr("largest allocation of small")));
 }
 
-// Windows of one size within the image, whose filters' weights add up to 1 at every pixel; one tile is the whole image.
+// Windows of one size lie within the image, and their filters' weights add up to 1 at every pixel; one tile is the
+// whole image.
 TEST(Waves, WindowsOfTheFieldCountEveryPixelOnce) {
     for (const auto& [tiles, pixels, parts] : {std::tuple{1, ImageSize{20, 12}, 2},
                                                {3, ImageSize{320, 200}, 1},
@@ -349,7 +351,7 @@ TEST(Waves, WindowsOfTheFieldCountEveryPixelOnce) {
     }
 }
 
-// How light is sorted is known before a tracer is made, and is that of the tracer's filter.
+// The way in which light is sorted is known before a tracer is made, and is that of the tracer's filter.
 TEST(Waves, AreToldApartByHowTheirLightIsSorted) {
     const auto instrument = turned_microscope();
     const auto specimen = test::rough_specimen();
@@ -382,14 +384,14 @@ TEST(Waves, KeepTheLightAndDoNotAddNoise) {
         const auto before = unfiltered(light, pixels, parts, filter.cell_count());
         const auto after = waves.apply(light);
         EXPECT_NEAR(sum(after.values) / sum(before.values), 1, 1e-12);
-        // The noise that is told, from 441 pixels of it; light of all cells alike is not that of a filled pupil.
+        // The noise that is told is seen in 441 pixels; light of all cells alike is not that of a filled pupil.
         const double noise = std::sqrt(variance(after.values) / variance(before.values));
         EXPECT_NEAR(noise, filter.noise(), 0.12);
         EXPECT_LT(noise, 0.95);
     }
 }
 
-// A grating along either side of a rectangle, and light that only a part of each pixel takes.
+// A grating lies along either side of a rectangle, and only a part of each pixel takes light.
 TEST(Waves, OfRectangularDetectorsWithGaps) {
     constexpr double aperture = 0.28, s = 0.5;
     constexpr double period = grating_wavelength / (2 * aperture * s);
@@ -422,7 +424,7 @@ TEST(Waves, OfRectangularDetectorsWithGaps) {
 }
 
 TEST(Waves, OfASingleCellInFocusAreTheAiryTransfer) {
-    // All light in one part of a pixel: its image is the point spread.
+    // In focus the cells' transfer functions, weighted by their shares, add up to that of a circular pupil.
     const auto instrument = optics::assemble(test::ideal_microscope_description());
     const optics::PupilFilter filter(instrument, {.cells = 8, .parts = 4});
     for (const double s : {0.1, 0.4, 0.7}) {
@@ -438,8 +440,8 @@ TEST(Waves, OfASingleCellInFocusAreTheAiryTransfer) {
 TEST(Waves, AreTheSameOnTheDeviceAndOnTheHost) {
     const auto instrument = test::microscope();
     const vulkan::Device device;
-    // Sizes with other primes than two; light that lies on one side only, to tell left from right.
-    // And of several filters over the field, in two windows.
+    // Sizes have other primes than two; light is stronger on one side, to tell left from right. The last case has
+    // several filters over the field, in two windows.
     for (const auto& [pixels, parts, cells, tiles] : {std::tuple{ImageSize{20, 20}, 2, 8, 1},
                                                       {ImageSize{7, 7}, 5, 2, 1},
                                                       {ImageSize{11, 6}, 3, 2, 1},
@@ -505,7 +507,7 @@ TEST(Waves, SortLightAlikeForwardAndBackwardOnDeviceAndHost) {
     std::vector<trace::Image> images;
     for (const auto estimator : {trace::Estimator::forward, trace::Estimator::backward}) {
         auto options = with_waves(estimator);
-        // A thousandth of the paths round otherwise. Of 400 000 a dozen do, which differ by 0.017 to 0.024 of the mean
+        // A thousandth of the paths round otherwise: a dozen of 400 000, which differ by 0.017 to 0.024 of the mean
         // from image to image.
         options.rays *= estimator == trace::Estimator::forward ? 2 : 1;
         images.push_back(trace::make_device_tracer(instrument, specimen, options)->expose(z, 1));
@@ -576,7 +578,7 @@ TEST(Exposures, UnderWayAtATimeAreTheSameBits) {
                 end = exposed.device_end;
             }
             EXPECT_NE(alone[0].flux.values, alone[1].flux.values);
-            // One that nobody asks for makes room again.
+            // An exposure whose result nobody asks for makes room again.
             for (int k = 0; k < 2 * tracer->most_under_way(); ++k) {
                 tracer->begin(0, 0);
             }

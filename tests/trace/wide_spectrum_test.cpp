@@ -1,6 +1,6 @@
-// Backward brings all light that forward brings, in wide spectra: what it takes for the exit pupil and for the source
-// holds every wavelength. Wrong twin: what holds the light of the reference wavelength alone, which loses the rims that
-// other colours have.
+// Backward brings all light that forward brings, in wide spectra: its bounds of the exit pupil and of the source hold
+// every wavelength. The wrong twin has the bounds of the reference wavelength alone, and loses the rims that other
+// colours have.
 #include "trace/device/device_tracer.hpp"
 #include "trace/microscope.hpp"
 
@@ -57,7 +57,7 @@ optics::Prescription singlet(const char* glass, double radius, double semi_diame
     return optics::parse_prescription(text, "singlet.toml");
 }
 
-// The condenser of another glass, with its curvature and distance for the same focal length.
+// Replaces the condenser by one of another glass, with its curvature and distance for the same focal length.
 void use_condenser_of(optics::InstrumentDescription& description, const char* glass) {
     constexpr double focal_length = 26;
     const auto glasses = optics::GlassCatalog::builtin();
@@ -87,7 +87,7 @@ optics::InstrumentDescription coloured(optics::Spectrum spectrum, double source_
     return description;
 }
 
-// The instrument, with what holds all light found at its reference wavelength alone.
+// The instrument with the bounds of all light found at its reference wavelength alone.
 optics::Instrument found_at_one_wavelength(const optics::InstrumentDescription& description) {
     auto alone = description;
     alone.spectrum = optics::Spectrum::line(description.spectrum.reference_um);

@@ -17,7 +17,7 @@
 namespace vkfv::vulkan {
 namespace {
 
-// The layouts of probe_vulkan_ray_query.comp.
+// The records have the layouts of probe_vulkan_ray_query.comp.
 struct Ray {
     glm::vec3 origin;
     float t_min;
@@ -38,7 +38,7 @@ struct Push {
     std::uint32_t flags;
 };
 
-// gl_RayFlags...EXT
+// The values are those of gl_RayFlags...EXT.
 constexpr std::uint32_t no_flags = 0;
 constexpr std::uint32_t cull_back = 0x10;
 constexpr std::uint32_t cull_front = 0x20;
@@ -65,7 +65,7 @@ std::vector<Hit> trace(const AccelerationStructure& structure, const std::vector
     return hits.read_values<Hit>(rays.size());
 }
 
-// z = slope_x x + slope_y y over [-1, 1]^2, triangles in the order of their median splits.
+// The plane z = slope_x x + slope_y y over [-1, 1]^2, its triangles in the order of their median splits.
 struct TiltedPlane {
     static constexpr int cells = 32;
     static constexpr double slope_x = 0.3;
@@ -117,7 +117,7 @@ struct Comparison {
     double largest_error = 0;
 };
 
-// Against z = slope_x x + slope_y y in double. Rays within 1e-4 of the border belong to neither side.
+// Compares hits with z = slope_x x + slope_y y in double. Rays within 1e-4 of the border belong to neither side.
 Comparison compare_with_plane(const std::vector<Ray>& rays, const std::vector<Hit>& hits, double slope_x,
                               double slope_y) {
     Comparison comparison;
@@ -174,7 +174,7 @@ TEST_F(RayQuery, MeetsTrianglesWhereThePlaneIs) {
     EXPECT_GT(right.hits, 5'000);
     EXPECT_EQ(right.wrong, 0);
     EXPECT_LT(right.largest_error, float_bound);
-    // The wrong twin: a plane tilted by 1e-4 more.
+    // The wrong twin is a plane tilted by 1e-4 more.
     const Comparison twin = compare_with_plane(rays, hits, TiltedPlane::slope_x + 1e-4, TiltedPlane::slope_y);
     EXPECT_GT(twin.largest_error, 10 * float_bound);
 
@@ -238,7 +238,7 @@ TEST_F(RayQuery, MeetsTheNearestOfTheSpheresInItsBoxes) {
             double nearest = std::numeric_limits<double>::infinity();
             bool grazing = false;
             for (const Sphere& sphere : spheres) {
-                // The textbook quadratic, in double.
+                // The truth is the textbook's quadratic equation, in double.
                 const glm::dvec3 f = o - glm::dvec3(sphere.centre);
                 const double b = glm::dot(f, d);
                 const double discriminant = b * b - glm::dot(f, f) + true_radius * true_radius;
@@ -265,7 +265,7 @@ TEST_F(RayQuery, MeetsTheNearestOfTheSpheresInItsBoxes) {
     int compared = 0;
     EXPECT_LT(largest_error(radius, compared), (1 + 3.2) * float_bound);
     EXPECT_GT(compared, 1'000);
-    // The wrong twin: spheres larger by 1 in 1000, of which the nearest points lie 2e-4 nearer.
+    // The wrong twin has spheres larger by 1 in 1000, of which the nearest points lie 2e-4 nearer.
     EXPECT_GT(largest_error(1.001 * radius, compared), 2e-4);
 }
 
@@ -286,7 +286,7 @@ TEST_F(RayQuery, ARayInTheFaceOfABoxIsOfferedIt) {
     for (const Hit& hit : in_face) {
         EXPECT_GE(hit.candidates, 1U);
     }
-    // The wrong twin: 1e-5 beside the faces, ten times the padding.
+    // The wrong twin aims 1e-5 beside the faces, ten times the padding.
     const std::vector<Hit> beside = trace(structure,
                                           {{{-2.0F, 0.0F, 0.10001F}, 0.0F, across, 10.0F},
                                            {{-2.0F, 0.40001F, 0.1F}, 0.0F, {1, 0, 0}, 10.0F},
@@ -318,7 +318,7 @@ TEST_F(RayQuery, PrimitivesThatAreNoneAreRefused) {
                  std::logic_error);
 }
 
-// Whether every half of every half lies on its side of the longest axis.
+// Whether each half of every half lies on its side of the longest axis.
 bool is_split_by_medians(const std::vector<glm::vec3>& centres, const std::vector<std::uint32_t>& order,
                          std::size_t first, std::size_t count) {
     if (count < 2) {
@@ -373,7 +373,7 @@ TEST(MedianOrder, IsAPermutationSplitByMedians) {
 }
 
 TEST(MedianOrder, CoincidentCentresKeepTheirOrderInSplits) {
-    // All equal: ties fall by index, so each half holds the lower indices.
+    // All centres are equal: ties fall by index, so each half holds the lower indices.
     const std::vector<glm::vec3> centres(100, glm::vec3(1, 2, 3));
     const std::vector<std::uint32_t> order = median_order(centres);
     std::vector<std::uint32_t> identity(100);

@@ -133,7 +133,7 @@ TEST(Devices, AnErrorSaysWhatEachDeviceLacksAndTheRemedy) {
     EXPECT_THAT(message_of(reports, "radeon"), HasSubstr("No Vulkan device matches \"radeon\""));
 }
 
-// The loader reads its environment once a process: each of these runs in its own.
+// The loader reads its environment once a process, so each of these tests runs in its own.
 class DeviceDeathTest : public ::testing::Test {
   protected:
     void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
@@ -173,7 +173,7 @@ TEST_F(DeviceDeathTest, AValidationMessageIsFatal) {
         "Vulkan validation: .*VUID-VkBufferCreateInfo-size");
 }
 
-// Two copies into one place, without a barrier: only synchronisation validation sees it.
+// Two copies go into one place without a barrier: only synchronisation validation sees it.
 TEST_F(DeviceDeathTest, AMissingBarrierIsFatal) {
     EXPECT_DEATH(
         {

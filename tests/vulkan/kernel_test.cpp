@@ -19,7 +19,7 @@ using ::testing::AllOf;
 using ::testing::Each;
 using ::testing::HasSubstr;
 
-// The layout of probe_vulkan_arithmetic.comp.
+// The record has the layout of probe_vulkan_arithmetic.comp.
 struct Push {
     std::uint64_t base;
     vk::DeviceAddress values;
@@ -78,7 +78,7 @@ TEST(Kernels, AreCompiledOnceOnADevice) {
                             {6, BindingKind::storage_buffer}},
                            sizeof(Push), std::span(&constant, 1));
     EXPECT_NE(first.pipeline(), with_more.pipeline());
-    // From several threads at once.
+    // Several threads compile at once.
     std::vector<std::future<vk::Pipeline>> threads;
     for (int k = 0; k < 8; ++k) {
         threads.push_back(std::async(std::launch::async, [] { return arithmetic_kernel(7).pipeline(); }));
@@ -97,7 +97,7 @@ TEST(Buffers, ReturnWhatWasWritten) {
         const std::vector<std::byte> data = pattern(1001);
         buffer.write(data);
         EXPECT_EQ(buffer.read_values<std::byte>(1001), data);
-        // A part, in the middle, leaves the rest alone.
+        // A part written in the middle leaves the rest alone.
         const std::vector<std::byte> part(13, std::byte{0xAB});
         buffer.write(part, 501);
         std::vector<std::byte> expected = data;
@@ -146,7 +146,7 @@ TEST(Buffers, LargerThanTheDeviceAreRefusedWithSizes) {
 
 constexpr std::uint32_t large_factor = 3'000'000'019U; // the products need 64 bits
 
-// kernel: with the factor above.
+// Expects the products of a kernel with the factor above.
 void expect_products(const Kernel& kernel) {
     constexpr std::uint32_t count = 1000; // not a multiple of the workgroup
     constexpr std::uint64_t base = std::uint64_t{1} << 40U;

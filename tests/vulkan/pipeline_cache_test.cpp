@@ -1,4 +1,4 @@
-// What is kept of compiled kernels.
+// Compiled kernels are kept for the next run, and damage to the cache does no harm.
 #include "support/own_cache.hpp"
 #include "vulkan/kernel.hpp"
 
@@ -9,7 +9,7 @@ namespace {
 
 using PipelineCache = test::OwnCache;
 
-// Opens the device, compiles a kernel and closes it; the files kept then.
+// Opens the device, compiles a kernel and closes it; returns the files kept then.
 std::vector<std::filesystem::path> compile() {
     {
         const Device device;

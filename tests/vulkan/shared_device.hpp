@@ -1,4 +1,4 @@
-// One device for all tests of the program: opening one costs more than most tests.
+// A device for all tests of the program: opening one costs more than most tests.
 #pragma once
 
 #include "vulkan/device.hpp"

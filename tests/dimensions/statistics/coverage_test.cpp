@@ -84,7 +84,7 @@ HeightMap made(const Standard& standard, const Grid<double>& noise) {
     return map;
 }
 
-// A dimension in all maps: how many of its standard errors it is off its value without noise.
+// A dimension in all maps, and by how many of its standard errors it is off its value without noise.
 struct Found {
     std::string name; // of the standard, the noise and the dimension
     std::vector<double> errors_off;
@@ -105,7 +105,7 @@ std::vector<Found> found_of(const Standard& standard, int window) {
     return result;
 }
 
-// Made once for both tests.
+// All dimensions in all maps, made once for both tests.
 const std::vector<Found>& all_found() {
     static const std::vector<Found> all = [] {
         std::vector<Found> result;
@@ -117,7 +117,7 @@ const std::vector<Found>& all_found() {
     return all;
 }
 
-// How many of the maps are within 1, 2 and 3 errors, if these were `factor` times as large.
+// The number of maps within 1, 2 and 3 errors, if these were `factor` times as large.
 std::array<int, 3> within(const Found& one, double factor) {
     std::array<int, 3> result{};
     for (std::size_t k = 0; k < 3; ++k)
@@ -126,8 +126,8 @@ std::array<int, 3> within(const Found& one, double factor) {
     return result;
 }
 
-// 68.3, 95.4 and 99.7 % of 60, to three and a half standard deviations of the binomial distribution: 1 of 40 sets of
-// 50 comparisons goes wrong by chance.
+// Whether the shares of 60 maps are 68.3, 95.4 and 99.7 %, to three and a half standard deviations of the binomial
+// distribution: 1 of 40 sets of 50 comparisons goes wrong by chance.
 bool honest(const std::array<int, 3>& within) {
     return within[0] >= 29 && within[0] <= 53 && within[1] >= 52 && within[2] >= 57;
 }
@@ -140,7 +140,7 @@ TEST(Coverage, DimensionsLieWithinTheirStandardErrorsAsOftenAsTheySay) {
     }
 }
 
-// The wrong twins: errors half and twice as large.
+// The wrong twins are errors half and twice as large.
 TEST(Coverage, ErrorsHalfOrTwiceAsLargeAreNotHonest) {
     for (const double factor : {0.5, 2.0})
         for (const auto& one : all_found())

@@ -31,8 +31,8 @@ HeightMap cap_map(double radius, double share, double noise, unsigned seed) {
     return map;
 }
 
-// How a least-squares fit of z = a + b x + c y + r^2 / (2 R) to all points of the true cap knows its radius: var(r^2)
-// over a circle of radius a is a^4 / 12.
+// The standard error with which a least-squares fit of z = a + b x + c y + r^2 / (2 R) to all points of the true cap
+// knows its radius: var(r^2) over a circle of radius a is a^4 / 12.
 double fit_error(double radius, double share, double noise) {
     const double rim = share * (points - 1) * pitch / 2;
     const double sag = radius - std::sqrt(radius * radius - rim * rim);
@@ -40,7 +40,7 @@ double fit_error(double radius, double share, double noise) {
     return radius * radius * noise * sag * 2 * std::sqrt(12 / count) / (rim * rim);
 }
 
-// Maps whose radius is within three stated errors of `radius`.
+// The number of maps whose radius is within three stated errors of `radius`.
 int good(double true_radius, double radius, double share, double noise, double* largest_error = nullptr) {
     int count = 0;
     for (unsigned seed = 1; seed <= seeds; ++seed) {

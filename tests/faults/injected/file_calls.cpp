@@ -36,7 +36,7 @@ bool concerns_us(std::string_view path) {
     return !folder.empty() && path.starts_with(folder) && (path.size() == folder.size() || path[folder.size()] == '/');
 }
 
-// A path as text, absolute; of descriptors what the kernel knows, so that none needs to be followed from open() on.
+// A path as absolute text; for descriptors the kernel's text, so that none needs to be followed from open() on.
 struct Path {
     char text[PATH_MAX + PATH_MAX] = "";
 
@@ -100,7 +100,7 @@ bool grows(int file, long long bytes) {
 
 std::atomic<long> opens, writes, syncs, renames, closes, truncations, folders, removals;
 
-// `write` a given number of bytes, `write_all` of them.
+// Writes or fails: `write` writes a given number of bytes, `write_all` all of them.
 template <class Write, class WriteAll>
 ssize_t write_or_fail(int file, std::size_t bytes, Write write, WriteAll write_all) {
     const Path path(file);
@@ -130,7 +130,7 @@ ssize_t write_or_fail(int file, std::size_t bytes, Write write, WriteAll write_a
 
 } // namespace
 
-// What C's headers declare; those with 64 in their names are the same functions.
+// The functions that stand in for libc's; those with 64 in their names are the same functions.
 extern "C" {
 
 #define OPEN(name)                                                                                                     \
@@ -196,7 +196,7 @@ ssize_t write(int file, const void* data, std::size_t bytes) {
 }
 
 ssize_t writev(int file, const iovec* parts, int count) {
-    // Half of the first part is less than all.
+    // Half of the first part is less than the whole.
     return write_or_fail(
         file, count > 0 ? parts[0].iov_len : 0,
         [&](std::size_t bytes) { return next(::write, "write")(file, parts[0].iov_base, bytes); },

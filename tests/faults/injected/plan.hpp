@@ -1,8 +1,8 @@
-// Which call is to fail, and how: read from the environment by both libraries.
+// The call that is to fail, and how, are read from the environment by both libraries:
 //
 //   VKFV_FAULT_CALL     name of the call, "write", "vkQueueSubmit"; without it nothing fails
 //   VKFV_FAULT_NUMBER   which of the calls of that name, from 1
-//   VKFV_FAULT_LASTS    not empty: of those that follow it too
+//   VKFV_FAULT_LASTS    not empty: all later calls of that name fail too
 //   VKFV_FAULT_EFFECT   what becomes of it: see the libraries
 //   VKFV_FAULT_LOG      a file to which each counted call is appended, a line of its name and what it concerns
 #pragma once
@@ -24,7 +24,7 @@ inline const char* setting(const char* name) {
     return value != nullptr ? value : "";
 }
 
-// Past libc, whose functions one of the libraries stands in for.
+// Appends a call to the log by system calls, past libc, whose functions one of the libraries stands in for.
 inline void log_call(const char* call, const char* subject) {
     const char* log = setting("VKFV_FAULT_LOG");
     if (*log == '\0') {
@@ -41,7 +41,7 @@ inline void log_call(const char* call, const char* subject) {
     errno = error;
 }
 
-// Counts this call; whether it is the one.
+// Counts this call; returns whether it is the one that is to fail.
 inline bool is_due(const char* call, const char* subject, std::atomic<long>& count) {
     log_call(call, subject);
     const long number = ++count;

@@ -71,7 +71,7 @@ VkResult result_to_return() {
     return effect == "VK_ERROR_OUT_OF_HOST_MEMORY" ? VK_ERROR_OUT_OF_HOST_MEMORY : VK_ERROR_INITIALIZATION_FAILED;
 }
 
-// Whether this call is to fail; then with what.
+// The result with which this call is to fail; success if it is not to.
 VkResult fault(Function function) {
     if (vkfv::faults::is_due(names[function], "", counts[function])) {
         const VkResult result = result_to_return();
@@ -150,7 +150,7 @@ PFN_vkVoidFunction general(Pointer function) {
     return reinterpret_cast<PFN_vkVoidFunction>(function);
 }
 
-// What stands in for a function; null: nothing does.
+// The function that stands in for one of Vulkan's; null where none does.
 PFN_vkVoidFunction stand_in(std::string_view name) {
     if (name == "vkGetInstanceProcAddr") {
         return general(instance_function);
@@ -182,7 +182,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance instance, 
     return next != nullptr ? next(instance, name) : nullptr;
 }
 
-// Functions of an extension that the device has not stay unknown.
+// Functions of an extension that the device does not have stay unknown.
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice device, const char* name) {
     const auto below = next_device_function.load()(device, name);
     const auto function = below != nullptr ? stand_in(name) : nullptr;

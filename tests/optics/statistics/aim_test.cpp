@@ -1,4 +1,4 @@
-// The directions that sources are aimed into hold all light that passes: of a few hundred illuminators that nobody
+// The directions that sources are aimed into hold all light that passes, for a few hundred illuminators that nobody
 // would build.
 #include "optics/aim/aim.hpp"
 
@@ -58,7 +58,7 @@ void displace(Surface& surface, Random& random) {
     surface = part.front().surface;
 }
 
-// Of glass, with a conic and an aspheric term now and then.
+// Adds a lens of glass, with a conic and an aspheric term now and then.
 void add_singlet(std::vector<Surface>& train, double distance, bool dispersive, Random& random) {
     const double glass = random.between(1.45, 1.9);
     const double radius = random.of_any_size(1, 12);
@@ -112,7 +112,7 @@ Illuminator random_illuminator(Random& random, bool symmetric) {
     return result;
 }
 
-// Of the hemisphere, about the normal.
+// The box of all light that the source emits into the hemisphere about its normal.
 EmissionBox whole_of(const DiscSource& source) {
     EmissionBox whole;
     whole[from_axis] = {0, source.radius};
@@ -142,8 +142,8 @@ double distance_from_middle(const physics::f64::Ray& ray, double shift) {
     return glm::length(glm::dvec2(ray.direction) - shift * glm::dvec2(ray.position));
 }
 
-// Analog light of the hemisphere, and what of it an adversary makes of it: from each ray that passes, steps of ever
-// smaller size away from the middle of this shift. The largest distance from it that passes; 0: none does.
+// The largest distance from the middle of this shift of any ray that passes; 0 if none does. Rays are analog light of
+// the hemisphere, from the farthest of which an adversary goes on by steps of ever smaller size.
 double farthest_passing(const Illuminator& illuminator, double shift, Random& random) {
     const EmissionBox whole = whole_of(illuminator.source);
     Place best{};
@@ -181,7 +181,8 @@ double farthest_passing(const Illuminator& illuminator, double shift, Random& ra
     return largest;
 }
 
-// Sampling alone, as a wrong twin: it must be seen to lose light.
+// No ray that passes is outside of the proved aim. The wrong twin is an aim by samples alone, which must be seen to
+// lose light.
 TEST(Aim, HoldsAllThatPassesRandomIlluminators) {
     Random random(31);
     constexpr int illuminators = 200;
@@ -223,8 +224,8 @@ TEST(Aim, HoldsAllThatPassesRandomIlluminators) {
     EXPECT_GT(lost_by_half_the_shift, shifted / 4);
 }
 
-// The edge that sampled rims are found by: of what passes everything is inside it, of what an edge stops something is
-// not.
+// The edge by which sampled rims are found agrees with the trace: rays that pass are inside it, and rays that an edge
+// stops are not.
 TEST(Aim, KnowsHowFarLightIsFromItsEdges) {
     Random random(35);
     int passing = 0;
@@ -248,7 +249,7 @@ TEST(Aim, KnowsHowFarLightIsFromItsEdges) {
     EXPECT_GT(stopped, 500);
 }
 
-// Share of the source's light that passes, and its standard error, of rays that are aimed.
+// The share of the source's light that passes, and its standard error, by rays that are aimed.
 struct Passing {
     double share = 0;
     double error = 0;
@@ -297,8 +298,8 @@ TEST(Aim, KeepsThePowerOfAnalogEmission) {
     EXPECT_GT(rejected_twins, 15);
 }
 
-// Boxes of every size: where the bounds exclude one, no ray of it passes; where all of a small one is stopped, they
-// mostly do.
+// Where the bounds exclude a box, of whatever size, no ray of it passes; where all of a small box is stopped, they
+// mostly do exclude it.
 TEST(BundleTracer, ExcludesOnlyWhatIsStopped) {
     Random random(32);
     int excluded = 0;
@@ -335,8 +336,8 @@ TEST(BundleTracer, ExcludesOnlyWhatIsStopped) {
     EXPECT_GT(dark_and_excluded, 0.9 * dark);
 }
 
-// A source of 1 mm, a field stop as large 1 mm behind it and a field lens without edge: what passes from one rim of the
-// source to the other of the stop is a thin cone far off the axis.
+// Behind a source of 1 mm stand a field stop as large, 1 mm away, and a field lens without edge: the light from one rim
+// of the source to the other of the stop is a thin cone far off the axis.
 TEST(Aim, HoldsThinConesOfAnAssembledIlluminator) {
     PrescribedSurface stop;
     stop.medium_after = Medium::air();

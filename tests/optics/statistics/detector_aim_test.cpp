@@ -75,8 +75,8 @@ std::vector<Named> microscopes() {
     return all;
 }
 
-// Of light that is emitted into the disc and meets the detector after one scatter at some height: how far it leaves
-// from its middle, both ways, in half sides of the rectangle.
+// The distances, from the middle of the aim and along both of its sides, at which light leaves the source that meets
+// the detector after one scatter at some height: in half sides of the aim's rectangle.
 std::vector<glm::dvec2> seen_directions(const Instrument& instrument, double greatest_height) {
     const auto& constants = instrument.constants;
     const glm::dvec2 sides = instrument.single_scatter_aim.value();
@@ -89,7 +89,7 @@ std::vector<glm::dvec2> seen_directions(const Instrument& instrument, double gre
     std::vector<glm::dvec2> seen;
     constexpr std::uint32_t rays = 300000;
     for (std::uint32_t k = 0; k < rays; ++k) {
-        // The ends decide.
+        // Heights are mostly at both ends, which decide.
         const double height = greatest_height * std::clamp(3 * uniform(generator) - 1.5, -1.0, 1.0);
         const auto exposure = test::exposure_of(instrument.front_vertex_height - height, 43);
         const auto emission = physics::f64::emit(instrument.scene(), constants,
@@ -138,7 +138,7 @@ TEST(DetectorAim, HoldsAllThatTheDetectorSees) {
     }
 }
 
-// In and out of the rectangle: what is emitted there is uniform, and no more than asked for.
+// The light that is emitted into the rectangle is uniform in it, and no more than asked for.
 TEST(DetectorAim, IsWhatTheSourceEmitsInto) {
     auto description = test::microscope();
     description.detector_pixels = {.columns = 64, .rows = 32};
@@ -160,7 +160,8 @@ TEST(DetectorAim, IsWhatTheSourceEmitsInto) {
         EXPECT_LE(std::max(std::abs(beside.x), std::abs(beside.y)), 1 + 1e-12);
         emitted.push_back(beside);
     }
-    // Standard deviations that mean and variance are off, along either side, where the rectangle had other sides.
+    // The number of standard deviations by which mean and variance along either side are off, for a rectangle of other
+    // sides.
     const auto off = [&](glm::dvec2 narrower, glm::dvec2 aside) {
         glm::dvec2 sum(0), squares(0);
         for (const glm::dvec2& each : emitted) {
@@ -173,15 +174,15 @@ TEST(DetectorAim, IsWhatTheSourceEmitsInto) {
         return std::max({mean.x, mean.y, variance.x, variance.y});
     };
     EXPECT_LT(off({1, 1}, {0, 0}), 4);
-    // Wrong twins: a side two hundredths shorter, a middle two hundredths beside its own; one standard deviation of so
-    // many rays is 0.0018 of a half side for the mean, 0.3 % for the variance.
+    // The wrong twins have a side two hundredths shorter, or a middle two hundredths beside its own; one standard
+    // deviation of so many rays is 0.0018 of a half side for the mean, 0.3 % for the variance.
     EXPECT_GT(off({0.98, 1}, {0, 0}), 4);
     EXPECT_GT(off({1, 0.98}, {0, 0}), 4);
     EXPECT_GT(off({1, 1}, {0.02, 0}), 4);
     EXPECT_GT(off({1, 1}, {0, 0.02}), 4);
 }
 
-// There the disc stays.
+// In these cases the aim stays a disc.
 TEST(DetectorAim, IsLeftOutWhereItSavesNothingOrIsNotKnown) {
     const auto aim_of = [](InstrumentDescription description) {
         description.single_scatter = true;

@@ -1,4 +1,4 @@
-// How near the filters of the field's tiles are to Hopkins' integral, at points all over a field of 1 mm.
+// The filters of the field's tiles are near Hopkins' integral at points all over a field of 1 mm.
 #include "optics/waves/filter_error.hpp"
 
 #include "../parts.hpp"
@@ -18,7 +18,7 @@ struct Worst {
     double integral = 0; // of the error's transfer function against that of the integral
 };
 
-// Over points of the field, some on tiles and some between them: shares of the half field.
+// Points of the field, some on tiles and some between them, as shares of the half field.
 const std::vector<glm::dvec2> ten_points = {glm::dvec2(0), {1, 0},      {1, 1},      {0.5, 0.25},  {0.75, 0.75},
                                             {0.25, 1},     {-0.9, 0.4}, {0.6, -0.6}, {-0.4, -0.1}, {-0.75, -0.5}};
 
@@ -34,8 +34,9 @@ Worst worst_of(const Instrument& instrument, const PupilFilter& filter, const st
     return worst;
 }
 
-// NA 0.28, corners 1.13 mm apart: within 0.05 of Hopkins' integral at ten points, where the filter of the axis is off
-// by 0.27. The integral's own quadrature (PointWaves::transfer()) shares no lattice with that of the error.
+// At NA 0.28 with corners 1.13 mm apart, the filters are within 0.05 of Hopkins' integral at ten points, where the
+// filter of the axis is off by 0.27. The integral's own quadrature (PointWaves::transfer()) shares no lattice with that
+// of the error.
 TEST(FieldError, IsSmallOverAMillimetre) {
     const Instrument instrument = assemble(test::wide_microscope());
     const PupilFilter filter = filter_for_waves(instrument);

@@ -1,5 +1,5 @@
-// Where pixels look: against closed forms of displaced ideal lenses and of a ball lens, and against light that is
-// traced the other way, from there to the detector.
+// Pixels look where closed forms of displaced ideal lenses and of a ball lens say, and light that is traced the other
+// way, from there to the detector, lands in them.
 #include "optics/instrument/pixel_mapping.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -62,8 +62,9 @@ double largest_aside(const InstrumentDescription& description, const Instrument&
     return largest / instrument.first_order.pixel_pitch;
 }
 
-// Behind ideal lenses of 20 and 200 mm a pixel at X on the detector's plane receives what goes to the tube lens with
-// the direction (c - X) / 200, c the lens' centre, and that leaves the objective's own axis at 20 / 200 (c - X).
+// Behind ideal lenses of 20 and 200 mm a pixel at X on the detector's plane receives the light that goes to the tube
+// lens with the direction (c - X) / 200, c the lens' centre, and that leaves the objective's own axis at 20 / 200 (c -
+// X).
 TEST(PixelMapping, OfDisplacedIdealLensesIsTheClosedForm) {
     const glm::dvec2 by(0.1, -0.06);
     struct Case {
@@ -125,9 +126,9 @@ TEST(PixelMapping, OfACentredInstrumentIsSymmetric) {
 }
 
 // A ball of glass with its stop in the middle focuses on a sphere about its centre, of its focal length as radius, and
-// what leaves that under the angle a is imaged at f' sin(a) by a lens that keeps the sine condition. So in focus pixels
-// look where they nominally do, while in the plane through the middle's focus they look at f tan(a): there the field is
-// distorted by 2 %.
+// a lens that keeps the sine condition images light that leaves the sphere under the angle a at f' sin(a). So in focus
+// pixels look where they nominally do, while in the plane through the middle's focus they look at f tan(a): there the
+// field is distorted by 2 %.
 TEST(PixelMapping, OfABallIsTakenWhereThePixelsAreInFocus) {
     constexpr double radius = 10, index = 1.5, focal_length = index * radius / (2 * (index - 1));
     auto description = test::ball_microscope(radius, index);
@@ -148,7 +149,7 @@ TEST(PixelMapping, OfABallIsTakenWhereThePixelsAreInFocus) {
     EXPECT_GT(largest_distortion, 0.02); // wrong twin: another plane
 }
 
-// Light that leaves the places that are told lands in the middle of the pixels: parts decentred and tilted, a wide
+// Light that leaves the places that are told lands in the middle of the pixels, with parts decentred and tilted, a wide
 // spectrum, folded and split ways.
 TEST(PixelMapping, LeadsLightBackToThePixels) {
     const auto expect_back = [](const char* name, const InstrumentDescription& description, double least_aside) {
@@ -177,7 +178,7 @@ TEST(PixelMapping, LeadsLightBackToThePixels) {
     folded.fold_mirrors = {{.distance = 100, .incidence = 45 * radians_per_degree, .azimuth = 0, .semi_diameter = 20}};
     folded.detector_placement.change.decentre_y = -0.2;
     expect_back("folded", folded, 9);
-    // A single lens behind a distant stop: barrel distortion.
+    // A single lens behind a distant stop has barrel distortion.
     auto distorted = test::ideal_microscope(0.02);
     distorted.tube_lens = {};
     distorted.tube_lens.medium_before = Medium::air();
@@ -193,7 +194,7 @@ TEST(PixelMapping, LeadsLightBackToThePixels) {
     EXPECT_GT(mapping.deviation().residual, 0.1 * instrument.first_order.pixel_pitch);
 }
 
-// The detector turned in its plane, and a scale between its axes by its tilt.
+// A detector turned in its plane gives a rotation, and its tilt a scale between the axes.
 TEST(PixelMapping, TellsRotationAndAmplification) {
     auto description = test::ideal_microscope(0.2);
     constexpr double turn = 2 * radians_per_degree;
@@ -213,7 +214,7 @@ TEST(PixelMapping, TellsRotationAndAmplification) {
     EXPECT_NEAR(tilted.deviation().amplification.x / tilted.deviation().amplification.y, 1 / std::cos(0.2), 1e-3);
 }
 
-// The rate is the place's.
+// The rate is that of the places, by central differences.
 TEST(PixelMapping, HasTheRateOfItsPlaces) {
     auto description = test::microscope();
     description.detector_placement.change.tilt_y = 0.1;

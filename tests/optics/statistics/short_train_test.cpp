@@ -27,8 +27,8 @@ std::vector<Surface> part(const optics::Instrument& instrument, int first, int c
     return {instrument.surfaces.begin() + first, instrument.surfaces.begin() + first + count};
 }
 
-// Both trains of microscopes with aspheres, under rays of which most end on their way; and lenses so strong that much
-// is missed or totally reflected.
+// Trains of two kinds: illumination and imaging of microscopes with aspheres, under rays of which most end on their
+// way, and lenses so strong that many rays miss them or are totally reflected.
 std::vector<Train> trains() {
     std::vector<Train> result;
     for (const char* objective : {"5x_0.15", "20x_0.41", "100x_0.83"}) {
@@ -41,7 +41,7 @@ std::vector<Train> trains() {
                           2 * std::tan(std::asin(instrument.first_order.numerical_aperture)), 1});
     }
     for (const double conic : {0.0, -0.6, -1.0, 0.8}) {
-        // A ball's two sides, of which the second reflects totally what is steep.
+        // The train is a ball's two sides, of which the second reflects steep light totally.
         Train ball{{test::surface(0.2, 0, 1, 1.8, conic), test::surface(-0.2, 10, 1.8, 1, conic)}, -3, 4, 1.5, 1};
         ball.surfaces[1].flags = SURFACE_CLIPPED;
         ball.surfaces[1].semi_diameter_squared = 16;
@@ -97,11 +97,11 @@ TEST(ShortTrain, EndsAMillionRaysAsTheLongFormDoes) {
             }
         }
     }
-    // All that can happen does.
+    // Every end that a path can have occurs.
     for (const unsigned status : {PATH_ALIVE, PATH_VIGNETTED, PATH_MISSED_SURFACE, PATH_TOTAL_REFLECTION}) {
         EXPECT_GT(by_status[status], 1000) << status;
     }
-    // Wrong twin: edges of which one form knows nothing.
+    // The wrong twin has edges of which one form knows nothing.
     EXPECT_GT(ends_of(trains()[1], SHORT_TRAIN_FINE, 1000, 3, false).differing, 100);
 }
 
@@ -110,7 +110,7 @@ TEST(ShortTrain, LeavesWhatItDoesNotKnowToTheLongForm) {
     tilted.features = FEATURE_PLACEMENT;
     tilted.surfaces[3].decentre_x = 0.5;
     EXPECT_EQ(ends_of(tilted, SHORT_TRAIN_FINE, 20000, 4).differing, 0);
-    // Wrong twin: the short way of it passes the lens where it does not stand.
+    // In the wrong twin the short form passes the lens where it does not stand.
     const Train straight = trains().front();
     const optics::TrainScene scene{.surfaces = tilted.surfaces, .present = FEATURE_PLACEMENT};
     const optics::TrainScene blind{.surfaces = tilted.surfaces, .present = 0};

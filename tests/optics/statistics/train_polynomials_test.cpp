@@ -1,4 +1,4 @@
-// A centred illumination as polynomials against the same surface by surface.
+// A centred illumination as polynomials ends rays as the trace from surface to surface does.
 #include "optics/instrument/train_polynomials.hpp"
 #include "optics/parts.hpp"
 
@@ -14,7 +14,7 @@ using namespace vkfv::physics::f64;
 
 namespace {
 
-// With its source a little larger than the pupil, so that every stop has light to stop.
+// The source is a little larger than the pupil, so that every stop has light to stop.
 optics::Instrument microscope(const char* objective) {
     auto description = test::microscope(objective);
     description.source.radius = 1.02 * optics::assemble(description).first_order.pupil_radius_in_source;
@@ -56,7 +56,7 @@ struct Compared {
     double direction = 0;
 };
 
-// The rays that the source emits, by the polynomials in float as devices have them.
+// Compares the rays that the source emits, with the polynomials in float as devices have them.
 Compared compare(const optics::Instrument& instrument, const TrainPolynomials& polynomials, int count) {
     const physics::f32::TrainPolynomials rounded = in_float(polynomials);
     const auto& constants = instrument.constants;
@@ -96,7 +96,7 @@ Compared compare(const optics::Instrument& instrument, const TrainPolynomials& p
 
 } // namespace
 
-// Against the sum of its terms, each by itself, of every degree.
+// The value is the sum of the terms, each computed by itself, for every degree.
 TEST(TrainPolynomials, AreTheSumOfTheirTerms) {
     std::mt19937_64 generator(5);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -123,8 +123,8 @@ TEST(TrainPolynomials, AreTheSumOfTheirTerms) {
     }
 }
 
-// Statuses are equal on all of a million rays but the few that are left to the trace, and what passes lands within the
-// errors that the fit has found; half again as large ones may be between its samples.
+// A million rays have equal statuses except for the few that are left to the trace, and light that passes lands within
+// the errors that the fit has found; errors half as large again may be between its samples.
 TEST(TrainPolynomials, EndAMillionRaysAsTheTraceDoes) {
     for (const char* objective : {"10x_0.28", "20x_0.41"}) {
         const auto instrument = microscope(objective);
@@ -138,7 +138,7 @@ TEST(TrainPolynomials, EndAMillionRaysAsTheTraceDoes) {
         EXPECT_GT(compared.told, 0.995 * rays) << objective;
         EXPECT_LT(compared.place, 1.5 * fitted->place_error + 1e-6) << objective;
         EXPECT_LT(compared.direction, 1.5 * fitted->direction_error + 1e-6) << objective;
-        // Wrong twins: an edge whose radius is a thousandth larger, and a term that is a hundredth off.
+        // The wrong twins are an edge whose radius is a thousandth larger, and a term that is a hundredth off.
         auto wide = fitted->polynomials;
         wide.edge[0].inside_below *= 1.002;
         wide.edge[0].ends_from *= 1.002;
@@ -149,7 +149,7 @@ TEST(TrainPolynomials, EndAMillionRaysAsTheTraceDoes) {
     }
 }
 
-// What depends on more than the ray, or too much of whose light comes near edges, is traced.
+// An illumination is traced that depends on more than the ray, or of whose light too much comes near edges.
 TEST(TrainPolynomials, LeaveOtherIlluminationsToTheTrace) {
     auto instrument = microscope("10x_0.28");
     ASSERT_TRUE(optics::fit_illumination(instrument));

@@ -1,4 +1,4 @@
-// Every model of shaders/physics/scatter, and the sums of lobes that materials are.
+// Every model of shaders/physics/scatter, and the sums of lobes that materials are, draw their densities.
 #include "physics/physics.hpp"
 #include "physics/scatter_registry.hpp"
 #include "specimen/scatter_tables.hpp"
@@ -48,8 +48,8 @@ struct Case {
     Material material; // one lobe of weight 1
 };
 
-// Each model with its parameters at several places of their ranges; no place is an end, where a model may degenerate.
-// Those that are read from a file have tests of their own.
+// The cases: each model with its parameters at several places of their ranges; no place is an end, where a model may
+// degenerate. Models that are read from a file have tests of their own.
 std::vector<Case> cases() {
     std::vector<Case> result;
     for (uint model = 0; model < vkfv::physics::scatter_registry.size(); ++model) {
@@ -76,8 +76,8 @@ std::vector<Case> cases() {
     return result;
 }
 
-// Simpson in t, the cosine being 1 - t^2, and the trapezoidal rule in the azimuth: both resolve the sharpest lobe, of
-// about 0.1 rad, and at grazing incidence 0.04 rad in the azimuth.
+// The share of light that is scattered: Simpson in t, the cosine being 1 - t^2, and the trapezoidal rule in the
+// azimuth. Both resolve the sharpest lobe, of about 0.1 rad, and at grazing incidence 0.04 rad in the azimuth.
 double share_scattered(const Material& material, double theta) {
     const int azimuths = 512;
     double sum = 0;
@@ -95,7 +95,7 @@ double share_scattered(const Material& material, double theta) {
     return sum * 2 * M_PI / azimuths;
 }
 
-// Mean over the adapted density at normal incidence of f(cos alpha), by quadrature in the cosine.
+// The mean of f(cos alpha) over the adapted density at normal incidence, by quadrature in the cosine.
 template <class Function>
 double mean_at_normal_incidence(double g, Function f) {
     // The substitution cos = 1 - t^4 resolves the peak at the mirror direction.
@@ -127,7 +127,7 @@ double share_in_pupil(const Material& material, double sine, uint seed) {
     return inside;
 }
 
-// Equal cells of the unit disc under the hemisphere, and a last one for what is not scattered.
+// Cells of equal area of the unit disc under the hemisphere, and a last one for light that is not scattered.
 constexpr int rings = 12, sectors = 16;
 
 std::vector<double> seen_in_cells(const Material& material, double theta, uint seed, uint draws) {
@@ -146,7 +146,7 @@ std::vector<double> seen_in_cells(const Material& material, double theta, uint s
     return seen;
 }
 
-// density(direction): per sr. d(omega) cos(theta_o) = dA.
+// The expected counts in the cells; density(direction) is per sr, and d(omega) cos(theta_o) = dA.
 std::vector<double> expected_in_cells(const std::function<double(real3)>& density, uint draws) {
     std::vector<double> cells(rings * sectors + 1);
     const int sub = 24;
@@ -181,7 +181,8 @@ double deviation_p(const Material& material, double theta, uint seed, uint draws
 
 } // namespace
 
-// What lossy ones keep is for their own tests.
+// A density integrates to one over the hemisphere, or to 0 for a mirror; for lossy models no more than one is asked
+// here, and their own tests know what they keep.
 TEST(Scatter, EveryDensityIntegratesToOne) {
     int integrated = 0;
     for (const auto& [name, delta, lossy, material] : cases()) {
@@ -192,7 +193,7 @@ TEST(Scatter, EveryDensityIntegratesToOne) {
         }
     }
     EXPECT_GE(integrated, 4 * 5);
-    // Wrong twin: the density at another incidence, as if it were symmetric.
+    // The wrong twin is the density at another incidence, as if it were symmetric.
     const Material sharp = henyey_greenstein(0.8);
     const auto twin = [&](double c) {
         return scatter_density(sharp, incoming_at(std::acos(c)), up, {std::sin(0.6), 0, std::cos(0.6)});
@@ -200,7 +201,7 @@ TEST(Scatter, EveryDensityIntegratesToOne) {
     EXPECT_GT(std::abs(2 * M_PI * integrate(twin, 0.0, 1.0) - 1), 1e-2);
 }
 
-// The sampler against the density, for every model: the family errs once in 1000.
+// For every model the sampler draws its density: the family of tests errs once in 1000.
 TEST(Scatter, EveryModelDrawsItsDensity) {
     const std::vector<double> thetas = {0.0, 0.7, 1.3};
     const uint draws = 200000;
@@ -210,7 +211,7 @@ TEST(Scatter, EveryModelDrawsItsDensity) {
         for (const double theta : thetas) {
             if (!delta) {
                 EXPECT_GT(deviation_p(material, theta, 31u, draws, material), level) << name << " " << theta;
-                // Wrong twin: 3 degrees off.
+                // The wrong twin is 3 degrees off.
                 EXPECT_LT(deviation_p(material, theta, 31u, draws, material, 0.05), level) << name << " " << theta;
             }
         }
@@ -282,18 +283,18 @@ TEST(Scatter, WeightsThatAddUpToOneAbsorbNothing) {
 }
 
 TEST(Scatter, APupilCollectsTheClosedFormShare) {
-    // From the definition; g = 0 is sin^2 = 0.0784 exactly.
+    // The shares follow from the definition; for g = 0 it is sin^2 = 0.0784 exactly.
     const std::vector<std::pair<double, double>> published = {
         {0.0, 0.0784}, {0.3, 0.1174}, {0.65, 0.2914}, {0.8, 0.5125}, {0.95, 0.8780}};
     for (const auto& [g, share] : published) {
         const double pupil_cosine = std::sqrt(1 - 0.28 * 0.28);
-        // Quadrature on a step function: the pupil's edge is resolved to t^3 dt ~ 1e-4.
+        // The quadrature is of a step function: the pupil's edge is resolved to t^3 dt ~ 1e-4.
         const double quadrature = integrate([&](double c) { return phase(c, g) * c; }, pupil_cosine, 1.0, 4000) /
                                   integrate([&](double c) { return phase(c, g) * c; }, 0.0, 1.0, 40000);
         EXPECT_NEAR(quadrature, share, 5.1e-5) << g; // printed to four digits
         const double seen = share_in_pupil(henyey_greenstein(g), 0.28, 21u);
         EXPECT_LT(share_z(seen, draws_made, quadrature), z_limit) << g;
-        // Wrong twin.
+        // The wrong twin has a g that differs by 0.02.
         const double twin = share_in_pupil(henyey_greenstein(g < 0.9 ? g + 0.02 : g - 0.02), 0.28, 22u);
         EXPECT_GT(share_z(twin, draws_made, quadrature), z_limit) << g;
     }
@@ -327,7 +328,8 @@ TEST(Scatter, MomentsAtNormalIncidenceAreShiftedByTheCosine) {
     EXPECT_GT(std::abs(mean_p2 - g * g), z_limit * error_p2);
 }
 
-// Henyey-Greenstein against the formula written anew and normalised over the cells; the family errs once in 1000.
+// The truth is Henyey and Greenstein's formula written anew and normalised over the cells; the family of tests errs
+// once in 1000.
 TEST(Scatter, HenyeyGreensteinHasTheStatedDensityAtEveryIncidence) {
     const std::vector<double> gs = {-0.4, 0.0, 0.3, 0.65, 0.8, 0.9};
     const std::vector<double> thetas = {0.0, 0.5, 1.0, 1.4};
@@ -346,7 +348,7 @@ TEST(Scatter, HenyeyGreensteinHasTheStatedDensityAtEveryIncidence) {
         return cells;
     };
     for (const double g : gs) {
-        // Flatter lobes, which take more draws to tell apart.
+        // Flat lobes take more draws to tell apart.
         const uint draws = g < 0 ? 2 * draws_made : draws_made;
         for (const double theta : thetas) {
             const auto seen = seen_in_cells(henyey_greenstein(g), theta, 24u, draws);
@@ -379,7 +381,7 @@ TEST(Scatter, AWhiteFurnaceKeepsEveryRay) {
             }
             EXPECT_EQ(lost, 0u) << name << " at " << degrees;
             EXPECT_EQ(below, 0u) << name << " at " << degrees;
-            // Wrong twin: without trying again energy is lost (but for the two forms that need one try).
+            // The wrong twin: without trying again energy is lost (except for the two forms that need one try).
             if (material.lobe_0.model == SCATTER_HENYEY_GREENSTEIN && g != 0.0 && g != 1.0) {
                 EXPECT_LT(single, 4000u) << name << " at " << degrees;
             }
@@ -411,14 +413,15 @@ TEST(Scatter, TheEndsOfHenyeyGreensteinAreLambertianAndMirror) {
         EXPECT_EQ(scatter(one, in, up, 29u, 1u, path, 1u).direction, reflected);
         EXPECT_NEAR(glm::length(reflected - real3(std::sin(theta), 0, std::cos(theta))), 0, 1e-15);
         EXPECT_EQ(scatter_density(one, in, up, reflected), 0);
-        // Wrong twins: near the ends, though they may draw the same direction where the first try is accepted.
+        // The wrong twins are near the ends, though they may draw the same direction where the first try is accepted.
         twins += scatter(near_zero, in, up, 29u, 1u, path, 1u).direction != drawn ? 1u : 0u;
         EXPECT_NE(scatter(near_one, in, up, 29u, 1u, path, 1u).direction, reflected);
     }
     EXPECT_GT(twins, 0u);
 }
 
-// The mirror: two cones, weighted by the cosine to the axis, overlap.
+// Light of a cone that a tilted mirror returns into the cone is the overlap of two cones, weighted by the cosine to the
+// axis.
 TEST(Scatter, ATiltedMirrorReturnsTheOverlapOfTwoCones) {
     const double sine = 0.4;
     const auto returned = [&](const Material& mirror, double tilt) {
@@ -460,8 +463,8 @@ TEST(Scatter, FloatDrawsTheSameDirectionsAsDouble) {
                          float(lobe.parameter_3),
                          {}};
         std::ranges::transform(lobe.table, single.lobe_0.table, [](double value) { return float(value); });
-        // What draws in the plane of direction cosines has its precision there; their height over the surface loses it
-        // near the horizon.
+        // Models that draw in the plane of direction cosines have their precision there; the height of the direction
+        // over the surface loses it near the horizon.
         const bool in_cosines = lobe.model == SCATTER_ABG || lobe.model == SCATTER_HARVEY_SHACK;
         uint count = 0;
         for (uint k = 0; k < 20000; ++k) {

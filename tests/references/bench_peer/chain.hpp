@@ -1,7 +1,6 @@
-// The chain of the peer: a tracer of its own kind to measure vkfv by, on all cores of the CPU, with the
-// specimen in Embree and the lenses in double. What it traces is read and assembled by vkfv, so that both see
-// the same instrument; how it traces, from the random numbers to the pixel, shares nothing with vkfv's
-// physics.
+// The chain of the peer: a tracer of its own kind to measure vkfv by, on all cores of the CPU, with the specimen in
+// Embree and the lenses in double. vkfv reads and assembles the instrument that it traces, so that both see the same
+// one; its way of tracing, from the random numbers to the pixel, shares nothing with vkfv's physics.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Compiled for the machine at hand with all that its compiler knows: loops over a block's rays become vector
-// instructions.
+// The tracer is compiled for the machine at hand with all that its compiler knows: loops over a block's rays become
+// vector instructions.
 #include "chain.hpp"
 
 #if __has_include(<embree4/rtcore.h>) // Debian 13, Ubuntu 24.04
@@ -62,7 +62,7 @@ class Generator {
             }
         }
     }
-    // Uniform in [0, 1), 52 bits. Writes multiples of eight.
+    // Fills u with numbers uniform in [0, 1), of 52 bits. Writes multiples of eight.
     void fill(Lane& u, int count) {
         for (int first = 0; first < count; first += 8) {
             for (int k = 0; k < 8; ++k) {
@@ -83,8 +83,8 @@ class Generator {
     alignas(64) std::uint64_t state_[4][8];
 };
 
-// To the surface's frame, to the surface, through its edge and by Snell's law in vector form:
-// d' = mu d + (sqrt(1 - mu^2 (1 - cos^2)) - mu cos) n.
+// Takes rays to the surface's frame, to the surface, through its edge and by Snell's law in vector form: d' = mu d +
+// (sqrt(1 - mu^2 (1 - cos^2)) - mu cos) n.
 template <Surface::Shape shape, bool refracts>
 void pass(const Surface& surface, Rays& rays, Lane& alive) {
     const double c = surface.curvature;
@@ -110,7 +110,8 @@ void pass(const Surface& surface, Rays& rays, Lane& alive) {
         double nx = 0, ny = 0, nz = 1;
         bool passes = true;
         if constexpr (shape != Surface::Shape::plane) {
-            // Quadric c (x^2 + y^2 + (1 + k) z^2) = 2 z from the vertex plane: the root that vanishes with c.
+            // The quadric c (x^2 + y^2 + (1 + k) z^2) = 2 z is met from the vertex plane: the root is the one that
+            // vanishes with c.
             const double constant = c * (x * x + y * y);
             const double half = dz - c * (x * dx + y * dy);
             const double square = shape == Surface::Shape::sphere ? c : c * (1 + (k1 - 1) * dz * dz);
@@ -177,7 +178,7 @@ void pass(const Surface& surface, Rays& rays, Lane& alive) {
     surface.index_ratio == 1 ? pass<shape, false>(surface, rays, alive) : pass<shape, true>(surface, rays, alive);
 }
 
-// Only what came through is left. Rays close up when a quarter of them has gone.
+// Leaves only the rays that came through. Rays close up when a quarter of them has gone.
 void pass_train(const std::vector<Surface>& train, Rays& rays) {
     alignas(64) Lane alive;
     alive.fill(1);
@@ -218,8 +219,8 @@ void fly_to(double plane, Rays& rays) {
     }
 }
 
-// cos and sin of 2 pi u. Apart, as the compiler makes vector instructions of either, but not of both in one
-// loop.
+// The cosine and the sine of 2 pi u, in two loops: the compiler makes vector instructions of either, but not of both in
+// one loop.
 void turn(const Lane& u, int count, Lane& cosine, Lane& sine) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
         cosine[k] = std::cos(2 * std::numbers::pi * u[k]);
@@ -229,8 +230,8 @@ void turn(const Lane& u, int count, Lane& cosine, Lane& sine) {
     }
 }
 
-// Lambertian disc: uniform in area, and in the direction's tangential part, within a disc or a rectangle about its
-// middle.
+// Emits from a Lambertian disc: uniform in area, and in the direction's tangential part within a disc or a rectangle
+// about its middle.
 void emit(const Chain& chain, Generator& generator, int count, Rays& rays) {
     alignas(64) Lane u0, u1, u2, u3;
     for (Lane* u : {&u0, &u1, &u2, &u3}) {
@@ -268,9 +269,9 @@ struct Normals {
     alignas(64) Lane x, y, z;
 };
 
-// Directions about each ray's mirror direction with the density p(alpha; g) cos(theta), p Henyey's and
-// Greenstein's, by rejection: from p with cos(theta), or from the cosine law with p over its greatest value,
-// whichever accepts more.
+// Draws directions about each ray's mirror direction with the density p(alpha; g) cos(theta), p Henyey's and
+// Greenstein's, by rejection: from p with cos(theta), or from the cosine law with p over its greatest value, whichever
+// accepts more.
 void scatter(double g, Generator& generator, Rays& rays, const Normals& normals) {
     const bool from_cosine = 4 * (1 - g) * (1 - g) > 1 + g;
     struct Pending {
@@ -300,14 +301,14 @@ void scatter(double g, Generator& generator, Rays& rays, const Normals& normals)
         turn(u1, count, cosines, sines);
         for (int i = 0; i < count; ++i) {
             const auto k = static_cast<std::size_t>(i);
-            // A point of the unit sphere.
+            // The direction starts as a point of the unit sphere.
             const double sz = 1 - 2 * u0[k];
             const double across = std::sqrt(std::max(1 - sz * sz, 0.0));
             const double sx = across * cosines[k], sy = across * sines[k];
             const double mx = pending.mx[k], my = pending.my[k], mz = pending.mz[k];
             double dx, dy, dz, least;
             if (from_cosine) {
-                // It and the normal added up follow the cosine law.
+                // The point of the sphere and the normal, added up, follow the cosine law.
                 dx = pending.nx[k] + sx;
                 dy = pending.ny[k] + sy;
                 dz = pending.nz[k] + sz;
@@ -318,7 +319,7 @@ void scatter(double g, Generator& generator, Rays& rays, const Normals& normals)
                 const double base = (1 - g) * (1 - g) / (1 + g * g - 2 * g * (dx * mx + dy * my + dz * mz));
                 least = base * std::sqrt(base);
             } else {
-                // Its part at right angles to the mirror direction has a uniform azimuth.
+                // The point's part at right angles to the mirror direction has a uniform azimuth.
                 const double ratio = (1 - g * g) / (1 - g + 2 * g * u3[k]);
                 const double cosine = g != 0 ? (1 + g * g - ratio * ratio) / (2 * g) : 2 * u3[k] - 1;
                 const double along = sx * mx + sy * my + sz * mz;
@@ -430,7 +431,7 @@ void set_lane(RayN& ray, int lane, const Rays& rays, int i) {
     ray.flags[lane] = one.flags;
 }
 
-// found[i] > 0: met, with the distance and the normal as Embree has it.
+// Finds the nearest hits: found[i] > 0 if the ray met, with the distance and the normal as Embree has it.
 template <int width>
 void find_hits(RTCScene scene, const Rays& rays, Lane& found, Lane& distance, Normals& normals) {
     const auto keep = [&](int i, unsigned geometry, float far, float x, float y, float z) {
@@ -492,8 +493,8 @@ void find_free(RTCScene scene, const Rays& rays, Lane& free) {
     }
 }
 
-// To the points met, and normals of unit length against the rays. Points stand a nanometre off their facets,
-// so that light does not meet the one that it leaves.
+// Moves rays to the points met, and makes normals of unit length against the rays. Points stand a nanometre off their
+// facets, so that light does not meet the one that it leaves.
 void land(const Lane& found, const Lane& distance, Rays& rays, Normals& normals) {
     int kept = 0;
     for (int i = 0; i < rays.count; ++i) {
@@ -516,7 +517,7 @@ void land(const Lane& found, const Lane& distance, Rays& rays, Normals& normals)
     rays.count = kept;
 }
 
-// One thread's share.
+// A thread and its share of the rays.
 template <int width>
 class Worker {
   public:
@@ -565,7 +566,7 @@ class Worker {
         }
     }
 
-    // Appends what passes the gate to the survivors; of rays that meet the specimen again, none.
+    // Appends the rays that pass the gate to the survivors, except for those that meet the specimen again.
     void depart(const Lane* again) {
         for (int i = 0; i < rays_.count; ++i) {
             const auto k = static_cast<std::size_t>(i);

@@ -1,4 +1,5 @@
-// Stacks of few images, of curves as narrow as their steps, of 8 bits, and in random order (model_stack.hpp).
+// Stacks of few images, of curves as narrow as their steps, of 8 bits, and in random order (model_stack.hpp) are
+// measured where, and only where, they have a maximum.
 #include "topography/model_stack.hpp"
 #include "topography/topography.hpp"
 
@@ -63,7 +64,7 @@ TEST(FewImages, InRandomOrderAreNotMeasured) {
 }
 
 TEST(FewImages, TellWhatPassesByChance) {
-    // Of seven values in random order a share of 0.03 to 0.1 is unimodal, by their form.
+    // A share of 0.03 to 0.1 of stacks of seven values in random order is unimodal, depending on their form.
     const ModelStack stack = model_stack(7, 1, false, 4);
     const Topography topography = reconstruct(stack.images, stack.z, 0, 0, 1, {});
     EXPECT_EQ(topography.stack.limit.least.unimodality, most_unimodality_asked);
@@ -73,7 +74,7 @@ TEST(FewImages, TellWhatPassesByChance) {
     EXPECT_EQ(unlimited.stack.limit.least.unimodality, 0);
 }
 
-// Maxima 3 steps apart, which the average along z makes one of, on texture of Gaussian contrast around both heights.
+// Maxima 3 steps apart, which the average along z makes one, stand on texture of Gaussian contrast around both heights.
 TEST(FocusCurve, TwoMaximaThatAveragesMakeOneAreNotMeasured) {
     constexpr int images = 41;
     std::mt19937 random(8);
@@ -97,8 +98,8 @@ TEST(FocusCurve, TwoMaximaThatAveragesMakeOneAreNotMeasured) {
     EXPECT_EQ(measured(3.4, 1), side * side);
 }
 
-// Texture of which every few pixels are in focus at one of two heights 12 steps apart, at random, in noise that hides
-// the second maximum of a point's own curve; and of the same two heights as a step of the specimen's.
+// The texture's pixels are, every few at random, in focus at one of two heights 12 steps apart, in noise that hides the
+// second maximum of a point's own curve. The other case has these two heights as a step of the specimen's.
 TEST(FocusCurve, TwoMaximaThatNoiseHidesAreNotMeasured) {
     constexpr int wide_side = 128, images = 31, cell = 4;
     const auto measured = [&](bool step, double noise, double most_rival) {
@@ -168,7 +169,7 @@ TEST(FocusProbes, FindNoSecondMaximumInWeakTextureAndNoise) {
 }
 
 TEST(FocusProbes, TellTheNoiseOfImages) {
-    // Variance 4 + 0.1 value, on a stack whose texture comes into focus.
+    // The noise has the variance 4 + 0.1 value, on a stack whose texture comes into focus.
     ModelStack stack = model_stack(61, 2, false, 6);
     std::mt19937 random(7);
     std::normal_distribution<double> normal;
@@ -192,7 +193,7 @@ TEST(FocusCurve, UnimodalityAndTheRivalAreTheirDefinitions) {
     };
     EXPECT_EQ(focus::f64::unimodality(shape_of({1, 2, 5, 5, 3, 1})), 1);
     EXPECT_EQ(shape_of({1, 2, 5, 5, 3, 1}).rival, 0);
-    // Rises and falls: 4 + 3 + 2 + 3; the largest accounts for 4 + 4 of these.
+    // The rises and falls are 4 + 3 + 2 + 3; the largest maximum accounts for 4 + 4 of these.
     EXPECT_EQ(focus::f64::unimodality(shape_of({1, 5, 2, 4, 1})), 8.0 / 12);
     EXPECT_EQ(shape_of({1, 5, 2, 4, 1}).rival, 2);
     EXPECT_EQ(shape_of({1, 4, 2, 5, 1}).rival, 2); // the lesser one first
@@ -215,7 +216,8 @@ TEST(FocusCurve, TheOrderShownIsItsDefinition) {
                                [&](double sum, double value) { return sum + (value - mean) * (value - mean); }) /
                count;
     };
-    // Steps squared, one to three images apart: 16 + 25 + 49 + 25 + 1 + 16, 1 + 4 + 4 + 16 + 9, 36 + 9 + 9 + 64.
+    // The squares of steps one to three images apart are 16 + 25 + 49 + 25 + 1 + 16, 1 + 4 + 4 + 16 + 9, 36 + 9 + 9 +
+    // 64.
     const double twice = 2 * 7 * variance(single);
     const double correlation = (6.0 / 7 - 132 / twice) + 0.8 * (5.0 / 7 - 34 / twice) + 0.5 * (4.0 / 7 - 118 / twice);
     const double unimodal = (2 * 7 - 2 - 3) / 9.0;

@@ -40,7 +40,7 @@ double pixel(const Grid<float>& image, int i, int j) {
     return image(mirror(i, image.columns), mirror(j, image.rows));
 }
 
-// The response's energy at a pixel by its definition: written as masks.
+// The response's energy at a pixel by its definition, written as masks.
 double energy(const Grid<float>& image, FocusMeasure measure, int i, int j) {
     const auto masked = [&](const std::vector<std::vector<double>>& mask) {
         const int radius = static_cast<int>(mask.size()) / 2;
@@ -129,7 +129,7 @@ TEST(FocusMeasure, IsItsDefinitionInEveryWindow) {
                     const auto result = focus_measure(image, measure, FocusWindow(window, shape));
                     for (int row = 0; row < result.rows; ++row)
                         for (int column = 0; column < result.columns; ++column)
-                            // float32 of results below 2
+                            // Results below 2 are in float32.
                             EXPECT_NEAR(result(column, row),
                                         direct_measure(image, measure, window, weight, column, row), 1.2e-7)
                                 << static_cast<int>(measure) << " " << window << " " << column << " " << row;
@@ -162,7 +162,7 @@ TEST(FocusMeasure, ImagesOfOneRowOrPixelHaveAMeasure) {
 }
 
 TEST(FocusMeasure, RowsSharedAmongThreadsGiveWhatOneRowAloneGives) {
-    // Large enough for several threads; a strip cut out with its margins stays on one.
+    // The image is large enough for several threads; a strip cut out with its margins stays on one.
     const auto image = noise_image(256, 600, 200, 15, 3);
     Grid<float> strip(256, 40);
     std::copy_n(image.values.begin() + 256 * 290, strip.values.size(), strip.values.begin());
@@ -176,7 +176,7 @@ TEST(FocusMeasure, RowsSharedAmongThreadsGiveWhatOneRowAloneGives) {
     }
 }
 
-// Standard deviation of the measure of images of noise over a texture, over noise_gain(). Windows that do not overlap:
+// The standard deviation of the measure of images of noise over a texture, over noise_gain(). Windows do not overlap:
 // 400 in an image. The texture is the same in all images of one seed: deviations are from each place's own mean.
 double gain_over_model(FocusMeasure measure, const FocusWindow& window, double texture, unsigned seed) {
     constexpr int side = 420, images = 12, spacing = 21;
@@ -206,8 +206,8 @@ double gain_over_model(FocusMeasure measure, const FocusWindow& window, double t
 }
 
 TEST(FocusMeasure, NoiseGainIsThatOfNoise) {
-    // 400 places with 11 degrees of freedom each: a standard deviation known to 1 / sqrt(2 * 4400) = 1.07 %; five of
-    // these (rate 6e-7) are 5.4 %. Narrow windows average less of what correlates between pixels by up to the masks'
+    // With 400 places of 11 degrees of freedom each a standard deviation is known to 1 / sqrt(2 * 4400) = 1.07 %; five
+    // of these (rate 6e-7) are 5.4 %. Narrow windows average less of what correlates between pixels by up to the masks'
     // width over the window's, a quarter for the wavelet's 5 of 19 pixels at both edges; and without texture the root
     // of the energies has 1 / sqrt(2) of the noise, the modified Laplacian sqrt(12.02 / 27.9), gradient and curvature
     // sqrt(0.44).

@@ -1,4 +1,4 @@
-// Levels of height that a window has at once: against textures at two heights, slopes and single levels.
+// Levels of height that a window has at once are found of textures at two heights, and not of slopes and single levels.
 #include "topography/hidden_levels.hpp"
 
 #include "topography/focus_probes.hpp"
@@ -19,7 +19,7 @@ namespace {
 constexpr int side = test::side, images = 41, window = 7;
 constexpr double width = 3; // images: standard deviation of a texture's amplitude along z
 
-// Textures that each fade as a Gaussian along z around heights of their own, in steps.
+// A texture that fades as a Gaussian along z around heights of its own, in steps.
 struct Layer {
     std::function<double(int, int)> height;
     double contrast;
@@ -78,13 +78,13 @@ TEST(HiddenLevels, AreAsFarAsTheTexturesAre) {
         for (const double apart : {4.0, 6.0, 8.0}) {
             const auto places = places_of(stack_of(two_levels(apart), 1), smoothing);
             ASSERT_GT(places.size(), 150u);
-            // The tails, a fifth of the curve, are left out, which takes off from levels nearby. Levels far apart are
-            // both half the distance from the maximum, or one of them the whole.
+            // The tails, a fifth of the curve, are left out, which takes off from levels nearby. Levels far apart both
+            // have half the distance from the maximum, or one of them the whole.
             const double distance = std::sqrt(mean_variance(places)) / (apart / 2);
             EXPECT_GT(distance, 0.7) << apart << " " << smoothing;
             EXPECT_LT(distance, 1.2) << apart << " " << smoothing;
         }
-        // The wrong twin: as much texture, at one level.
+        // The wrong twin has as much texture, at one level.
         EXPECT_NEAR(mean_variance(places_of(stack_of(slope(0), 1), smoothing)), 0, 0.1) << smoothing;
     }
 }
@@ -101,12 +101,12 @@ TEST(HiddenLevels, ASlopeHasNone) {
     const int radius = window / 2;
     EXPECT_EQ(HiddenLevels(places, height, 1, radius).variance(side / 2, side / 2), 0);
     EXPECT_LT(HiddenLevels(places, height, 1, radius).mean_deviation(), 0.8);
-    // The wrong twin: a level map, whose slope is not taken off.
+    // The wrong twin is a level map, whose slope is not taken off.
     EXPECT_GT(HiddenLevels(places, Grid<double>(side, side), 1, radius).variance(side / 2, side / 2), 1);
     EXPECT_EQ(HiddenLevels({}, height, 1, radius).variance(3, 3), 0);
 }
 
-// A window's height is that of neither level, or of one of both.
+// The height of a window with two levels is that of neither, or of one of them.
 TEST(HiddenLevels, AreInTheUncertainty) {
     std::vector<double> z;
     for (int k = 0; k < images; ++k) {

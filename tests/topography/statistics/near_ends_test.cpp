@@ -1,5 +1,5 @@
-// Specimens that are in focus near an end of the scan: texture blurred by Gaussians that widen with the distance from
-// focus.
+// Specimens in focus near an end of the scan are measured without bias: their texture is blurred by Gaussians that
+// widen with the distance from focus.
 #include "topography/focus_probes.hpp"
 #include "topography/topography.hpp"
 
@@ -43,7 +43,7 @@ Grid<double> blurred(const Grid<double>& image, double sigma) {
     return both;
 }
 
-// place: of the specimen, in steps of the scan; blur: pixels a step.
+// A flat specimen at `place` in steps of the scan, blurred by `blur` pixels a step.
 std::vector<Grid<float>> flat_at(double place, double blur, unsigned seed, int images = 41) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
@@ -75,7 +75,7 @@ Topography evaluated(const std::vector<Grid<float>>& stack, std::optional<double
     return reconstruct(stack, z, 0, 0, 1, {.focus_measure = measure, .smoothing_steps = smoothing});
 }
 
-// In the columns from first to end.
+// The figures of the columns from first to end.
 Found found_in(const Topography& topography, double place, int first, int end) {
     Found found{.width = topography.stack.curve_width_steps};
     int measured = 0, beyond = 0;
@@ -136,8 +136,8 @@ TEST(NearTheEnds, WhatIsInTheScanIsMeasuredByTheMeasuresForNoise) {
     }
 }
 
-// One part is in focus over more images than the other, as a window upon a slope is, and the stack's width is that of
-// neither.
+// A part of the field is in focus over more images than the other, as a window upon a slope is, and the stack's width
+// is that of neither part.
 TEST(NearTheEnds, PartsOfDifferentDepthsOfFocusAreMeasuredEachByItsOwnWidth) {
     constexpr int images = 61, margin = 8; // of windows that see both parts
     for (const double from_end : {3.0, 4.0, 6.0}) {
@@ -167,7 +167,7 @@ TEST(NearTheEnds, PartsOfDifferentDepthsOfFocusAreMeasuredEachByItsOwnWidth) {
 }
 
 TEST(NearTheEnds, AnAverageAsWideAsTheCurvesAllowLosesIt) {
-    // The wrong twin: what suits the curves' width in the middle of the scan.
+    // The wrong twin is the average that suits the curves' width in the middle of the scan.
     const Found found = found_at(3, 0.19, 1, 41, most_smoothing_of_width * 2.8);
     EXPECT_GT(found.width, 2);
     EXPECT_LT(found.measured, 0.5);

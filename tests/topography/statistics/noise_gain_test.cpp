@@ -1,4 +1,4 @@
-// Noise of focus measures and of heights where neighbouring pixels' noise is correlated.
+// Noise of focus measures and of heights is known where neighbouring pixels' noise is correlated.
 #include "topography/noise/noise_gain.hpp"
 
 #include "topography/blurred_noise.hpp"
@@ -43,8 +43,9 @@ TEST(NoiseGain, OfIndependentPixelsIsThatOfClosedForms) {
     EXPECT_NEAR(noise_gain(FocusMeasure::modified_laplacian, 1), std::sqrt(27.9), 0.005); // three digits
 }
 
-// Standard deviation of the measures (by number) of blurred noise of relative deviation 1 over a texture, in a window
-// of a pixel. At 81 places that share none, 6 images of 4 textures: 1620 degrees of freedom, 1.8 % of the deviation.
+// The standard deviation of the measures (by number) of blurred noise of relative deviation 1 over a texture, in a
+// window of a pixel. 81 places that share no pixel and 6 images of 4 textures have 1620 degrees of freedom: 1.8 % of
+// the deviation.
 std::vector<double> gains_of_images(const std::vector<FocusMeasure>& measures, const BlurredNoise& texture,
                                     const BlurredNoise& noise) {
     constexpr int width = 21, spacing = 27, images = 6, textures = 4;
@@ -92,7 +93,8 @@ TEST(NoiseGain, OfBlurredNoiseIsThatOfItsImages) {
         const auto gains = gains_of_images(all, blurred, blurred);
         for (std::size_t m = 0; m < all.size(); ++m) {
             const double ratio = gains[m] / noise_gain(all[m], 1, blurred.correlation());
-            // Four standard deviations; a window of 21 has a tenth less at most, as for independent noise.
+            // The bounds are four standard deviations; a window of 21 has a tenth less at most, as for independent
+            // noise.
             EXPECT_LT(ratio, 1.07) << name_of(all[m]) << " " << aperture;
             EXPECT_GT(ratio, 0.88) << name_of(all[m]) << " " << aperture;
         }
@@ -105,12 +107,12 @@ TEST(NoiseGain, OfBlurredNoiseIsThatOfItsImages) {
             EXPECT_LT(ratio, 1.07) << name_of(second[m]) << " " << aperture;
             EXPECT_GT(ratio, 0.88) << name_of(second[m]) << " " << aperture;
         }
-        // The wrong twin: independent pixels.
+        // The wrong twin is noise of independent pixels.
         EXPECT_LT(of_parts[1] / noise_gain(wavelet, 1), 0.7) << aperture;
     }
 }
 
-// Level, in focus at image 20 everywhere; a texture fades as a Gaussian of a standard deviation of 5 images.
+// A level stack, in focus at image 20 everywhere; its texture fades as a Gaussian of a standard deviation of 5 images.
 class LevelStack {
   public:
     LevelStack(const Grid<double>& texture, const BlurredNoise& noise, unsigned seed, double deviation = 1)
@@ -155,8 +157,7 @@ TEST(NoiseCorrelation, IsFoundInTheStack) {
         const auto found = probes.noise_correlation(), expected = noise.correlation();
         for (int dy = 0; dy <= NoiseCorrelation::reach; ++dy) {
             for (int dx = -NoiseCorrelation::reach; dx <= NoiseCorrelation::reach; ++dx) {
-                // Four of some 240 000 pairs' deviations are 0.012; of a patch's variance the smallest quarter is
-                // taken.
+                // Four deviations of some 240 000 pairs are 0.012; of a patch's variance the smallest quarter is taken.
                 EXPECT_NEAR(found(dx, dy), expected(dx, dy), 0.03) << aperture << " " << dx << " " << dy;
             }
         }
@@ -191,8 +192,8 @@ struct Scatter {
     double share = 0; // of the points that every stack measured
 };
 
-// The noise that each map is given, over the scatter of heights over stacks that differ in their noise; root mean
-// squares over the points.
+// The noise that each map is given, over the scatter of heights over stacks that differ in their noise; both are root
+// mean squares over the points.
 Scatter scatter_of(const Grid<double>& texture, const BlurredNoise& noise, FocusMeasure measure, double smoothing_steps,
                    unsigned stacks) {
     Grid<double> sums(texture.columns, texture.rows), squares = sums, counts = sums;
@@ -222,7 +223,7 @@ Scatter scatter_of(const Grid<double>& texture, const BlurredNoise& noise, Focus
             .share = places / static_cast<double>(sums.values.size())};
 }
 
-// 81 windows that share no pixel have 9 degrees of freedom each: a standard deviation known to 2.6 %.
+// The 81 windows share no pixel and have 9 degrees of freedom each: a standard deviation is known to 2.6 %.
 TEST(HeightNoise, OfBlurredImagesIsThatOfTheirHeights) {
     constexpr int side = 64, stacks = 10;
     for (const auto& [aperture, pitch] : blurs) {
@@ -238,8 +239,8 @@ TEST(HeightNoise, OfBlurredImagesIsThatOfTheirHeights) {
     }
 }
 
-// The noise of a camera arises after the blur, so that its spectrum is not that of the texture. 81 windows with 19
-// degrees of freedom each: a standard deviation known to 1.8 %.
+// The noise of a camera arises after the blur, so that its spectrum is not that of the texture. The 81 windows have 19
+// degrees of freedom each: a standard deviation is known to 1.8 %.
 TEST(HeightNoise, OfACameraIsThatOfItsHeights) {
     constexpr int side = 64;
     constexpr unsigned stacks = 20;
@@ -261,7 +262,7 @@ TEST(HeightNoise, OfACameraIsThatOfItsHeights) {
         EXPECT_GT(found.share, 0.95) << name;
         EXPECT_NEAR(found.told_over_found, 1, 0.15) << name;
 
-        // The wrong twin: texture of the noise's spectrum.
+        // The wrong twin is texture of the noise's spectrum.
         LevelStack stack(texture, noise, 0);
         FocusProbes probes(side, side, measure, FocusWindow(7, WindowShape::box));
         for (int k = 0; k < LevelStack::images; ++k) {
@@ -296,7 +297,7 @@ TEST(FocusChoice, IsByTheNoiseOfTheStack) {
         ASSERT_TRUE(options.settled());
         const bool counts = deviation > 0.1;
         EXPECT_EQ(*options.focus_measure, counts ? where_noise_counts : where_noise_is_low) << deviation;
-        // What else is chosen is by the measure chosen.
+        // The average along z is chosen for the measure chosen.
         EXPECT_EQ(*options.smoothing_steps, counts ? by_chosen.suitable_smoothing() : fine) << deviation;
         TopographyOptions single{.focus_measure = std::nullopt, .smoothing_steps = 0};
         probes.settle(single);

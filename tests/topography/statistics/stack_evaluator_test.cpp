@@ -49,7 +49,7 @@ SyntheticStack make_stack(double counts, unsigned seed) {
     Grid<double> texture(pixels, pixels);
     for (int j = 0; j < pixels; ++j)
         for (int i = 0; i < pixels; ++i) {
-            // Whole periods either way, so that mirror images are opposite and the transposed is orthogonal.
+            // Waves have whole periods either way, so that mirror images are opposite and the transposed is orthogonal.
             stack.truth.height(i, j) = amplitude * std::sin(2 * pi * i / 48.0) * std::cos(2 * pi * (j - 5.5) / 24.0);
             texture(i, j) = std::max(0.05, 1 + 0.3 * normal(random));
         }
@@ -58,7 +58,7 @@ SyntheticStack make_stack(double counts, unsigned seed) {
         Grid<double> blurred(pixels, pixels);
         for (int j = 0; j < pixels; ++j)
             for (int i = 0; i < pixels; ++i) {
-                // 0.3 pixels at focus: the pixel's own width.
+                // The blur is 0.3 pixels at focus: the pixel's own width.
                 const double sigma = std::hypot(0.3, 0.2 * std::abs(z - stack.truth.height(i, j)) / pitch);
                 const int radius = static_cast<int>(std::ceil(3 * sigma));
                 std::vector<double> weights;
@@ -101,7 +101,7 @@ TEST(Reconstruct, FindsTheHeightsOfASyntheticStack) {
         // for a focus measure with equal weights, nearer 1 as sharp pixels weigh more.
         EXPECT_GT(deviation.sq_measured / deviation.sq_true, 0.8) << measure;
         EXPECT_LT(deviation.sq_measured / deviation.sq_true, 1.1) << measure;
-        // The three are bound by the law of cosines.
+        // Correlation, ratio and deviation are bound by the law of cosines.
         const double ratio = deviation.sq_measured / deviation.sq_true;
         EXPECT_NEAR(deviation.rms / deviation.sq_true, std::sqrt(1 + ratio * ratio - 2 * deviation.correlation * ratio),
                     1e-9)
@@ -130,7 +130,7 @@ TEST(Reconstruct, HeightsAreNotMirroredOrTransposed) {
 }
 
 TEST(Reconstruct, HeightsFromShuffledFramesDoNotCorrelateWithTheTruth) {
-    // Without the limits that would leave nothing. One shuffle maps heights to other heights by chance, with a
+    // The limits are off, which would leave no heights. One shuffle maps heights to other heights by chance, with a
     // correlation of some 0.5: the mean over 200 shuffles is 0 to 0.5 / sqrt(200) = 0.035, and 0.1 is 2.8 of these. The
     // seed is fixed.
     SyntheticStack stack = make_stack(300, 3);
@@ -159,8 +159,8 @@ TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
         return std::count_if(topography.height.height.values.begin(), topography.height.height.values.end(),
                              [](double z) { return std::isfinite(z); });
     };
-    // 2304 pixels at a rate of at most 1e-3 are 2.3; neighbouring windows share pixels, so that false peaks
-    // come in groups of some ten: 1 % is two groups.
+    // At a rate of at most 1e-3, 2.3 of 2304 pixels pass; neighbouring windows share pixels, so that false peaks come
+    // in groups of some ten: 1 % is two groups.
     for (const std::string& measure : focus_measure_names())
         for (const double smoothing_steps : {0.0, 3.0})
             EXPECT_LE(measured(focus_measure_from_name(measure), smoothing_steps, 1e-3), pixels * pixels / 100)
@@ -171,7 +171,7 @@ TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
 
 TEST(Reconstruct, PeaksBeyondTheScanAreNotMeasured) {
     const SyntheticStack stack = make_stack(300, 5);
-    // Only images from 3 um above the highest point on.
+    // The scan has only images from 3 um above the highest point on.
     std::vector<Grid<float>> images;
     std::vector<double> z;
     for (std::size_t k = 0; k < stack.z.size(); ++k)
@@ -233,8 +233,9 @@ TEST(Reconstruct, TextureWeakerThanTheNoiseIsMeasuredInTheMiddleOfALongScan) {
     }
 }
 
-// The means at the ends stand for places further inside, and blunt a curve less: left alone, that shifts heights by up
-// to 0.9 and 0.2 images in the first two. By any peak method, since what a method finds is what is put right.
+// The means at the ends stand for places further inside, and blunt a curve less: uncorrected, that would shift heights
+// by up to 0.9 and 0.2 images in the first two cases. Every peak method is corrected for the places that it finds
+// itself.
 TEST(Reconstruct, HeightsNearAnEndAreThoseOfTheMiddle) {
     const auto height = [](const SyntheticStack& stack, const std::string& method) {
         const auto found = mean_height(evaluate(stack, {.focus_measure = FocusMeasure::modified_laplacian,
@@ -256,8 +257,8 @@ TEST(Reconstruct, HeightsNearAnEndAreThoseOfTheMiddle) {
     }
 }
 
-// Encoders that read the places of the images give the same heights; those that read 2 more give heights 2 more, near
-// an end too, and of readings that jitter a height is a mean.
+// Encoders that read the places of the images give the same heights; encoders that read 1.5 k + 2 give heights that
+// follow, near an end too, and with readings that jitter a height is a mean.
 TEST(Reconstruct, HeightsAreThoseOfTheReadings) {
     const auto stack = level_stack(41, 34, 5, 10);
     const auto by = [&](const std::function<std::optional<double>(int)>& reading) {
@@ -324,7 +325,7 @@ TEST(Reconstruct, RejectsWhatItCannotEvaluate) {
     EXPECT_THROW(stack({0, 1, 2}, broken), InputError);
 }
 
-// What the evaluator asks for, and when.
+// Checks that the evaluator asks for its planes in order, and only for images that are still kept.
 class WatchedPlanes final : public FocusPlanes {
   public:
     explicit WatchedPlanes(const FocusPlanesPlan& plan) : plan_(plan), planes_(make_host_focus_planes(plan)) {}
@@ -424,7 +425,7 @@ TEST(Reconstruct, HoldsFewImagesHoweverLongTheStack) {
 }
 
 TEST(Reconstruct, AnImageAtATimeGivesWhatTheWholeStackGives) {
-    // The definition, with all curves in memory and no ring: a wrong index anywhere would show.
+    // The truth is the definition, with all curves in memory and no ring: a wrong index anywhere would show.
     const SyntheticStack stack = make_stack(300, 7);
     const TopographyOptions options{.focus_measure = FocusMeasure::standard_deviation,
                                     .peak = PeakMethod::gaussian_fit,
@@ -570,9 +571,8 @@ TEST(Compare, TheLFilterRemovesWhatIsLongInBoth) {
         for (int i = 0; i < 60; ++i)
             measured.height(i, j) += 3e-3 * std::cos(2 * pi * j / 50.0);
     EXPECT_LT(compare(measured, truth).correlation, 0.5);
-    // Waves of 24 um stay, those of 100 um go: at an index of 40 um the high-pass keeps 1 - 2^-(40/24)^2 =
-    // 0.85 of the one and 1 - 2^-(40/100)^2 = 0.105 of the other, 0.3e-3 mm; the correlation is 0.85 /
-    // hypot(0.85, 0.31).
+    // At an index of 40 um the high-pass keeps 1 - 2^-(40/24)^2 = 0.85 of waves of 24 um and 1 - 2^-(40/100)^2 = 0.105
+    // of those of 100 um, 0.3e-3 mm; the correlation is 0.85 / hypot(0.85, 0.31).
     EXPECT_GT(compare(measured, truth, {.s_filter = 0, .l_filter = 0.04}).correlation, 0.9);
 }
 
@@ -584,7 +584,7 @@ TEST(Compare, TheSFilterRemovesWhatIsShortInBoth) {
             measured.height(i, j) = truth.height(i, j) + (i % 2 == 0 ? 2e-3 : -2e-3);
         }
     EXPECT_LT(compare(measured, truth).correlation, 0.5);
-    // Waves of two points (4 um) go: at an index of 24 um the filter keeps 2^-36 of them.
+    // At an index of 24 um the filter keeps 2^-36 of waves of two points (4 um).
     const Deviation filtered = compare(measured, truth, {.s_filter = 0.024, .l_filter = 0});
     EXPECT_GT(filtered.correlation, 0.99); // a cut-off window at the border leaves some
     EXPECT_NEAR(filtered.sq_measured / filtered.sq_true, 1, 0.01);

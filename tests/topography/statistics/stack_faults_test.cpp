@@ -82,7 +82,7 @@ TEST(StackFaults, AStepOfTheExposureIsToldWithItsPlace) {
     EXPECT_NEAR(faults.exposure_step, 0.2 / (1 + 0.2 * 16 / 41), 0.01);
     EXPECT_EQ(faults.step_image, 25);
     EXPECT_LT(faults.flicker, 0.01);
-    // The wrong twin: light that changes slowly.
+    // The wrong twin is light that changes slowly.
     auto slow = good_images(4);
     for (std::size_t k = 0; k < slow.size(); ++k) {
         brighten(slow[k], 1 + 0.3 * static_cast<double>(k) / 40);
@@ -104,8 +104,8 @@ TEST(StackFaults, SaturatedPixelsAreCounted) {
     EXPECT_NEAR(faults_of(images).saturated_share, static_cast<double>(cut) / static_cast<double>(all), 1e-12);
 }
 
-// Spots that every image shows, however far from focus, in noise. `path` gives the shift in pixels and the scale of an
-// image by its place in the stack, 0 to 1.
+// Images of spots that every image shows, however far from focus, in noise. `path` gives the shift in pixels and the
+// scale of an image by its place in the stack, 0 to 1.
 template <typename Path>
 StackFaults faults_of_moved(Path path, unsigned seed) {
     std::vector<Grid<float>> images(41, Grid<float>(side, side));

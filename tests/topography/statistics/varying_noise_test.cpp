@@ -1,4 +1,4 @@
-// Noise that changes along z, without texture, beside texture, and with a pattern that all images have.
+// Noise that changes along z is not measured: without texture, beside texture, and with a pattern that all images have.
 #include "topography/persistence.hpp"
 #include "topography/topography.hpp"
 
@@ -51,7 +51,7 @@ std::vector<Case> cases() {
             {.name = "dust", .noise = wide, .pattern = 0.01}};
 }
 
-// Brightness 1. object: the left half has texture, in focus a little before the middle of the scan.
+// Images of brightness 1. With `object` the left half has texture, in focus a little before the middle of the scan.
 std::vector<Grid<float>> images_of(const Case& of, bool object, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
@@ -108,7 +108,7 @@ TEST(VaryingNoise, IsNotMeasured) {
 }
 
 TEST(VaryingNoise, PassesForTextureWhereItIsTheSameInNeighbouringImages) {
-    // The wrong twin: a curve of the same form, whose pattern persists.
+    // The wrong twin is a curve of the same form, whose pattern persists.
     const auto images = images_of({.name = "", .noise = [](double) { return 1.0; }}, true, 5);
     EXPECT_GT(measured_share(reconstruct(images, steps(31), 0, 0, 1, {}), 0, side / 2 - 4), 0.99);
 }
@@ -155,7 +155,7 @@ TEST(Persistence, TheLimitIsExceededAtItsRate) {
         curve.joint_squares = images * kept;
         exceeded += limit.exceeded_by(curve, 1) ? 1 : 0;
     }
-    // One place of the scan has its share of the rate.
+    // A single place of the scan has its share of the rate.
     const double expected = rate / (images * kept) * samples;
     EXPECT_NEAR(exceeded, expected, 0.15 * expected + 4 * std::sqrt(expected));
 }

@@ -1,4 +1,4 @@
-// Images of waves by filters of several points of the field.
+// Images of waves are made by filters of several points of the field.
 #include "core/mathematics/units.hpp"
 #include "optics/waves/point_waves.hpp"
 #include "trace/interface/wave_image.hpp"
@@ -31,7 +31,7 @@ double variance(const std::vector<double>& values) {
     return squares / static_cast<double>(values.size() - 1);
 }
 
-// Pixels of an eighth of the shortest wave that it passes.
+// An ideal microscope with pixels of an eighth of the shortest wave that it passes.
 optics::Instrument ideal_microscope() {
     auto description = test::ideal_microscope_description();
     constexpr double wavelength = 0.55e-3, aperture = 0.28;
@@ -43,7 +43,7 @@ optics::Instrument ideal_microscope() {
 
 } // namespace
 
-// Where all tiles have one filter, the image in windows is that of the whole: no seam shows. The field is taken for so
+// If all tiles have one filter, the image in windows is that of the whole: no seam shows. The field is taken for so
 // small that the wavefronts do not differ; the light has steps from pixel to pixel, as large as itself.
 TEST(WavesOfTheField, InWindowsAreThoseOfTheWholeImage) {
     auto instrument = ideal_microscope();

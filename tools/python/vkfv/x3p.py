@@ -12,7 +12,7 @@ from .array import Array
 
 UM_PER_M = 1e6
 POINT_TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
-# As the program holds to: a small file that unpacks to more is made to fill the memory.
+# The limits are those of the program: a small file that unpacks to more is made to fill the memory.
 LARGEST_XML, LARGEST_CHECKSUM_FILE, LARGEST_POINT_COUNT = 1 << 24, 4096, 1 << 28
 FREELY_PACKED, LARGEST_PACKING = 1 << 28, 64
 
