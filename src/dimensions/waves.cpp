@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <complex>
+#include <limits>
 #include <numeric>
 
 namespace vkfv::dimensions {
@@ -32,6 +33,7 @@ struct Points {
 Points points_of(const HeightMap& map, const Frame& frame, bool radial) {
     Points points{.all = {}, .places = {}, .components = radial ? 1u : 2u, .extent = 0};
     double mean = 0;
+    double left = std::numeric_limits<double>::infinity(), bottom = left, right = -left, top = -left;
     for (int row = 0; row < map.rows(); ++row)
         for (int column = 0; column < map.columns(); ++column)
             if (const double z = map.height(column, row); std::isfinite(z)) {
@@ -39,14 +41,16 @@ Points points_of(const HeightMap& map, const Frame& frame, bool radial) {
                 const double r = std::hypot(x, y);
                 points.all.push_back({x, y, z, radial ? std::array{r, 0.0} : std::array{x, y}});
                 points.places.push_back(map.height.index(column, row));
-                points.extent = std::max(points.extent, 2 * r);
+                left = std::min(left, x);
+                right = std::max(right, x);
+                bottom = std::min(bottom, y);
+                top = std::max(top, y);
+                // Radial waves extend from the frame's origin, others over the diagonal of what is measured.
+                points.extent = radial ? std::max(points.extent, r) : std::hypot(right - left, top - bottom);
                 mean += z;
             }
     for (auto& point : points.all)
         point.z -= mean / static_cast<double>(points.all.size());
-    // The extent is twice the largest distance from the frame's origin, for radial waves that distance itself.
-    if (radial)
-        points.extent /= 2;
     return points;
 }
 

@@ -70,7 +70,8 @@ class Cluster : public testing::Test {
 };
 
 TEST_F(Cluster, SeveralDevicesGiveTheBytesOfOne) {
-    for (const Words& further : {Words{}, Words{"--estimator", "backward"}, Words{"--set", "diffraction.model=none"}}) {
+    for (Words further : {Words{}, Words{"--estimator", "backward"}, Words{"--set", "diffraction.model=none"}}) {
+        further.insert(further.end(), {"--rays", "20000"});
         fs::remove_all(folder_ / "one");
         fs::remove_all(folder_ / "two");
         Words one = further, two = further;
@@ -88,7 +89,8 @@ TEST_F(Cluster, SeveralDevicesGiveTheBytesOfOne) {
 }
 
 TEST_F(Cluster, ShardsMergeToTheBytesOfOneRun) {
-    for (const Words& further : {Words{}, Words{"--set", "diffraction.model=airy", "--estimator", "backward"}}) {
+    for (Words further : {Words{}, Words{"--set", "diffraction.model=airy", "--estimator", "backward"}}) {
+        further.insert(further.end(), {"--rays", "20000"});
         for (const char* name : {"one", "shared", "apart-1", "apart-2", "merged"}) {
             fs::remove_all(folder_ / name);
         }

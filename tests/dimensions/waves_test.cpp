@@ -81,6 +81,15 @@ TEST(Waves, ARadialWave) {
 TEST(Waves, NoneInALevelMapOrOneTooShort) {
     EXPECT_FALSE(fitted_waves(made({}, [](double, double) { return 0.0; }, {.gaps = 1}), {}, {{20.0, 0.0}}));
     EXPECT_FALSE(fitted_waves(made({}, [](double u, double) { return std::sin(2 * u); }), {}, {{1 / pi, 0.0}}));
+    // A map does not grow longer where the frame's origin stands at its edge: one and a third periods are too few.
+    const HeightMap map = made({}, [](double, double) { return 0.0; });
+    const double length = std::hypot(map.x(map.columns() - 1) - map.x(0), map.y(map.rows() - 1) - map.y(0));
+    for (const double x : {0.0, map.x(0)}) {
+        const Frame frame{.x = x};
+        const double frequency = 4.0 / 3 / length;
+        const HeightMap wave = made(frame, [&](double u, double) { return 0.001 * std::sin(2 * pi * frequency * u); });
+        EXPECT_FALSE(fitted_waves(wave, frame, {{frequency, 0.0}})) << x;
+    }
 }
 
 TEST(Transfer, OfAChirpSmoothedByABoxIsItsSinc) {

@@ -30,13 +30,14 @@ class SweepOfStacks : public testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    // The stacks are small, of 11 images, and each combination has two repeats.
+    // The stacks are small, of 11 images with pixels in few parts, and each combination has two repeats.
     std::vector<TomlOverride> overrides(const std::string& surfaces, const fs::path& out) const {
         return {{"trace.rays", "1e5", ""},
                 {"detector.pixels", "16", ""},
                 {"specimen.size_mm", "0.14", ""},
                 {"scan.z_step_um", "2.7", ""},
                 {"topography.smoothing_steps", "0.7", ""},
+                {"diffraction.parts_per_pixel", "2", ""},
                 {"sweep.repeats", "2", ""},
                 {"output.directory", toml_quoted((folder_ / out).string()), ""},
                 {"output.surfaces", surfaces, ""}};

@@ -117,17 +117,25 @@ void expect_alike(const std::vector<Channels>& images, const TopographyOptions& 
     expect_near(evaluated(images, options, make_reference_focus_planes), host, which);
 }
 
+// Responses and peaks are found apart, so each measure goes with one method of peaks, and each method with a measure of
+// energies and one of magnitudes.
 TEST(DeviceFocusPlanes, GiveTheHostsBitsByEveryMeasureAndPeakMethod) {
     const auto grey = stack(1);
-    for (const auto& measure : focus_measure_names())
-        for (const auto& peak : peak_method_names())
-            expect_alike(grey,
-                         {.focus_measure = focus_measure_from_name(measure),
-                          .peak = peak_method_from_name(peak),
-                          .peak_range_steps = 5, // with these, 11 images and curves are taken together: two dispatches
-                          .smoothing_steps = 1.5,
-                          .false_peak_rate = 1},
-                         fmt::format("{} {}", measure, peak));
+    for (const auto& measure : focus_measure_names()) {
+        for (const auto& peak : peak_method_names()) {
+            if (measure == name_of(FocusMeasure::wavelet) || measure == name_of(FocusMeasure::modified_laplacian) ||
+                peak == name_of(PeakMethod::gaussian_fit)) {
+                expect_alike(
+                    grey,
+                    {.focus_measure = focus_measure_from_name(measure),
+                     .peak = peak_method_from_name(peak),
+                     .peak_range_steps = 5, // with these, 11 images and curves are taken together: two dispatches
+                     .smoothing_steps = 1.5,
+                     .false_peak_rate = 1},
+                    fmt::format("{} {}", measure, peak));
+            }
+        }
+    }
 }
 
 TEST(DeviceFocusPlanes, GiveTheHostsBitsOfColourAndWithAGaussianWindow) {

@@ -7,9 +7,9 @@
 namespace vkfv {
 
 // Transforms of lines. KISS FFT takes length times p operations for a prime factor p of the length; where the largest p
-// exceeds 13, the transform is therefore made as a convolution by transforms of a longer convenient length (L. Bluestein, "A linear filtering
-// approach to the computation of discrete Fourier transform", 1970). The object keeps the twiddle factors of all lengths
-// used so far and is not thread-safe: each thread needs its own.
+// exceeds 13, the transform is therefore made as a convolution by transforms of a longer convenient length (L.
+// Bluestein, "A linear filtering approach to the computation of discrete Fourier transform", 1970). The object keeps
+// the twiddle factors of all lengths used so far and is not thread-safe: each thread needs its own.
 class LineTransform {
   public:
     LineTransform();

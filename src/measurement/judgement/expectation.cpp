@@ -27,7 +27,7 @@ namespace {
 
 constexpr int least_sample_side = 36, most_sample_side = 48;             // pixels
 constexpr std::uint64_t fewest_sample_rays = 32, most_sample_rays = 256; // for each pixel
-constexpr std::uint64_t rays_of_sample = 100'000; // at each of two heights, a second on two cores
+constexpr std::uint64_t rays_of_sample = 50'000; // at each of two heights, half a second on two cores
 constexpr std::uint64_t rays_of_forward_probe = 100'000;
 
 struct Sample {
