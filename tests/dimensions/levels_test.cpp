@@ -77,7 +77,7 @@ TEST(Levels, NoiseIsToldByTheStandardError) {
 TEST(Levels, CorrelatedProfilesCountAsFewer) {
     std::mt19937 random(4);
     std::normal_distribution<double> normal;
-    double scatter = 0, told = 0;
+    double scatter = 0, told = 0, of_independent_values = 0;
     for (int draw = 0; draw < 300; ++draw) {
         std::vector<double> white(408), window;
         std::ranges::generate(white, [&] { return normal(random); });
@@ -90,9 +90,15 @@ TEST(Levels, CorrelatedProfilesCountAsFewer) {
         const Mean mean = mean_of(window);
         scatter += mean.mean * mean.mean / 300;
         told += mean.standard_error * mean.standard_error / 300;
+        double variance = 0;
+        for (const double value : window) {
+            variance += (value - mean.mean) * (value - mean.mean) / static_cast<double>(window.size() - 1);
+        }
+        of_independent_values += variance / static_cast<double>(window.size()) / 300;
     }
     EXPECT_NEAR(told / scatter, 1, 0.35);
-    // The wrong twin, s / sqrt(n), would be wrong by a factor of eight in variance; it is not computed here.
+    // The wrong twin is s / sqrt(n), whose variance is an eighth of the means'.
+    EXPECT_LT(of_independent_values / scatter, 1 - 0.35);
 }
 
 TEST(Levels, AnEdgeAloneHasItsHeight) {
