@@ -59,10 +59,11 @@ TEST(CameraStack, HasTheSameBytesInOneRunResumedAndInShards) {
     for (const char* file : {"images/z_0000.tif", "images/z_0004.tif", "results.json", "topography.tif"}) {
         EXPECT_EQ(read_file(folder / "b" / file), one.at(file)) << file;
     }
-    const auto camera = nlohmann::json::parse(one.at("results.json")).at("camera");
+    const auto results = nlohmann::json::parse(one.at("results.json"));
+    const auto& camera = results.at("camera");
     EXPECT_GT(camera.at("exposure_s"), 0);
     EXPECT_GT(camera.at("ray_noise_e"), camera.at("camera_noise_e")); // of 2000 rays
-    EXPECT_THAT(camera.at("warnings").dump(), HasSubstr("--rays"));
+    EXPECT_THAT(results.at("warnings").dump(), HasSubstr("--rays"));
     EXPECT_THAT(read_file(folder / "a/report.html"), HasSubstr("camera noise / e⁻"));
     EXPECT_THAT(one.at("images/z_0000.tif"), HasSubstr("values=grey values in DN"));
 
@@ -222,7 +223,7 @@ TEST(CameraCommand, WritesFiguresChartsAndImages) {
     }
     for (const auto& [file, light] : listed) {
         const bool pair = file.ends_with("_a.tif") || file.ends_with("_b.tif");
-        const auto same = [&](const Set& set) {
+        const auto same = [&, &light = light](const Set& set) {
             return (set.images == 2) == pair && std::abs(set.light.first - light.first) <= 1e-6 &&
                    std::abs(set.light.second - 1e9 * light.second) <= 0.1;
         };
