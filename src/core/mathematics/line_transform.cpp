@@ -1,5 +1,7 @@
 #include "core/mathematics/line_transform.hpp"
 
+#include "core/mathematics/complex_product.hpp"
+
 #include <Eigen/Core>
 #include <unsupported/Eigen/FFT>
 
@@ -25,11 +27,6 @@ int largest_prime_factor(int number) {
         }
     }
     return std::max(largest, number);
-}
-
-// std::complex's product without its handling of infinities, which takes most of the time.
-Complex product(const Complex& a, const Complex& b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
 } // namespace

@@ -1,10 +1,10 @@
 #include "optics/waves/cell_transfer.hpp"
 
+#include "core/mathematics/complex_product.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
 #include "core/threads/parallel_rows.hpp"
 #include "optics/instrument/image_quality.hpp"
-#include "optics/waves/complex_product.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "optics/waves/filter_error.hpp"
 
+#include "core/mathematics/complex_product.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/threads/parallel_list.hpp"
-#include "optics/waves/complex_product.hpp"
 
 #include <algorithm>
 #include <array>

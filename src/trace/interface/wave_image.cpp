@@ -1,9 +1,9 @@
 #include "trace/interface/wave_image.hpp"
 
+#include "core/mathematics/complex_product.hpp"
 #include "core/mathematics/fourier.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/threads/parallel_list.hpp"
-#include "optics/waves/complex_product.hpp"
 #include "trace/interface/wave_windows.hpp"
 
 #include <algorithm>
@@ -132,8 +132,8 @@ void WaveImage::Window::add(const Parts& parts, const std::array<int, 4>& cells)
                     Complex& sum_ahead = sums_[filter].ahead(column, row);
                     Complex& sum_behind = sums_[filter].behind(column, row);
                     for (std::size_t k = 0; k < cells.size(); ++k) {
-                        sum_ahead += optics::product(transfers.at(cells[k], place_ahead), ahead[k]);
-                        sum_behind += optics::product(transfers.at(cells[k], place_behind), behind[k]);
+                        sum_ahead += product(transfers.at(cells[k], place_ahead), ahead[k]);
+                        sum_behind += product(transfers.at(cells[k], place_behind), behind[k]);
                     }
                 }
             }
