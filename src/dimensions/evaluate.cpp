@@ -36,7 +36,7 @@ Dimensions of_levels(const std::string& name, const char* rule, double nominal,
     if (levels) {
         take(by_profiles, levels->profiles);
         areal.value = levels->areal;
-        areal.standard_error = levels->profiles.standard_error; // lateral and areal value use the same points
+        areal.standard_error = levels->profiles.standard_error; // the areal value uses the profiles' points
     }
     return {by_profiles, areal};
 }

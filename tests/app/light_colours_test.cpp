@@ -40,7 +40,7 @@ void replace_text(std::string& text, const std::string& found, const std::string
 nlohmann::json checked(const std::string& configuration, const std::vector<std::string>& more = {}) {
     const auto folder = fresh_folder("light_colours");
     write_file(folder / "c.toml", configuration);
-    // With few rays a pixel the sample by which noise is foretold is small.
+    // The rays that foretell the noise of forward images are no more than those of the configuration.
     std::vector<std::string> arguments = {"check", "c.toml", "--json", "--rays", "10000"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const auto result = run_program(arguments, folder);

@@ -91,7 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Fourier,
                          testing::Values(std::pair{8, 4}, std::pair{6, 15}, std::pair{7, 5}, std::pair{16, 1},
                                          std::pair{17, 13}, std::pair{38, 23}));
 
-// A long prime takes a few times as long as the convenient length beside it, not as many times as its size.
+// A long prime takes some six times as long as the convenient length beside it: three transforms of twice the length.
+// KISS FFT alone, the wrong twin, took 2800 times as long.
 TEST(FourierTransform, LongPrimesAreTransformedAsFastAsTheirNeighbours) {
     const auto seconds = [](int length) {
         Grid<Complex> grid = noise(length, 8);

@@ -243,7 +243,7 @@ Texture texture_of_image(const trace::Image& image, const Sample& sample, const 
     const double windows =
         std::max(1.0, count / window.pixels(light.columns, light.rows, light.columns / 2, light.rows / 2));
     const double scatter = std::sqrt(std::max(0.0, squares / count - found * found) / windows);
-    constexpr double of_model = 0.1; // share of the noise's energy by which its model may be wrong
+    constexpr double of_model = 0.1; // share of the noise's energy; magnitudes are added as energies
     return {.energy = found - variance * noise.energy,
             .error = std::hypot(scatter, of_model * variance * noise.energy)};
 }
