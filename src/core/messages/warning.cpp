@@ -41,7 +41,10 @@ void append(std::vector<Warning>& warnings, const std::vector<Warning>& further)
 
 std::string number_text(double value, Rounding rounding) {
     constexpr int digits = 4;
-    if (value == 0 || !std::isfinite(value)) {
+    // Powers of ten that a double holds exactly enough: numbers beyond them are no key's value, and are not rounded.
+    constexpr double least = 1e-300;
+    constexpr double most = 1e300;
+    if (!(std::abs(value) >= least && std::abs(value) <= most)) {
         return fmt::format("{:g}", value);
     }
     const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1 - digits);
