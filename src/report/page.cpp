@@ -94,17 +94,19 @@ void Page::script(std::string_view file) {
     scripts_.emplace_back(file);
 }
 
-std::string Page::document(std::string_view title) const {
+std::string Page::document(std::string_view title, std::string_view summary) const {
     std::string links;
     for (const Section& section : sections_) {
         links += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.id, escaped(section.title));
     }
-    std::string text = fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-                                   "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-                                   "<meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{0}</title>\n"
-                                   "<style>/*<![CDATA[*/\n{1}/*]]>*/</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n"
-                                   "<nav aria-label=\"Sections\">\n<ul>\n{2}</ul>\n</nav>\n</header>\n<main>\n",
-                                   escaped(title), page_file("page.css"), links);
+    std::string text =
+        fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+                    "<meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{0}</title>\n"
+                    "<style>/*<![CDATA[*/\n{1}/*]]>*/</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n{3}"
+                    "<nav aria-label=\"Sections\">\n<ul>\n{2}</ul>\n</nav>\n</header>\n<main>\n",
+                    escaped(title), page_file("page.css"), links,
+                    summary.empty() ? "" : fmt::format("<p id=\"summary\">{}</p>\n", escaped(summary)));
     text += body_;
     text += fmt::format("{}</main>\n{}", sections_.empty() ? "" : "</section>\n", licences_of(scripts_));
     text += data_;

@@ -30,7 +30,8 @@ class Page {
     // Adds a script, a file of src/report/page or of a library. Scripts run in this order, after all data.
     void script(std::string_view file);
 
-    std::string document(std::string_view title) const;
+    // The whole page. summary: one line below the title, to which scripts add the date of the file; empty: none.
+    std::string document(std::string_view title, std::string_view summary = {}) const;
 
   private:
     struct Section {

@@ -27,9 +27,10 @@ TEST(Page, ShowsTextsAsTheyAre) {
     page.table("caption <", {{"", "one"}, {"</table>", "<b>"}});
     page.section("two", "two");
     page.folded("title", "key = \"<value>\"\nsecond = 2\n");
-    const auto document = parsed(page.document("t < u"));
+    const auto document = parsed(page.document("t < u", "x & y"));
     const auto body = document.child("html").child("body");
     EXPECT_STREQ(body.child("header").child("h1").child_value(), "t < u");
+    EXPECT_STREQ(body.child("header").child("p").child_value(), "x & y");
     const auto first = body.child("main").child("section");
     EXPECT_STREQ(first.child("h2").child_value(), "a < b & \"c\"");
     const auto table = first.child("div").child("table");
@@ -50,6 +51,7 @@ TEST(Page, CarriesItsPictures) {
     page.section("s", "s");
     page.picture(svg, "what \"it\" shows");
     const auto document = parsed(page.document("t"));
+    EXPECT_FALSE(document.child("html").child("body").child("header").child("p"));
     const auto image = document.child("html").child("body").child("main").child("section").child("p").child("img");
     EXPECT_STREQ(image.attribute("alt").value(), "what \"it\" shows");
     EXPECT_EQ(image.attribute("src").value(), "data:image/svg+xml;base64," + report::base64(svg));

@@ -1,12 +1,17 @@
 #include "measurement/evaluation/evaluation_files.hpp"
 
 #include "core/files/file.hpp"
+#include "core/mathematics/units.hpp"
 #include "measurement/evaluation/evaluation_figures.hpp"
 #include "measurement/evaluation/stack_page.hpp"
 #include "measurement/scene/warning_json.hpp"
 #include "report/layout.hpp"
 #include "scan/store.hpp"
+#include "specimen/kinds.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <future>
 #include <utility>
 
@@ -21,10 +26,22 @@ void write_timings_script(const std::filesystem::path& folder) {
     write_file(folder / "timings.js", "vkfv.timings.show(" + text.dump() + ");\n");
 }
 
+// "Specimen "step" under a 20x/0.41 microscope: 512 x 512 pixels of 0.345 um, light of 0.588 um."
+std::string summary_of(const Configuration& configuration, const optics::Instrument& instrument) {
+    const auto& first_order = instrument.first_order;
+    const auto [columns, rows] = instrument.detector_pixels();
+    return fmt::format(
+        "Specimen \"{}\" under a {:.3g}x/{:.2g} microscope: {} x {} pixels of {:.3g} µm, light of {:.3g} µm.",
+        specimen::kinds().at(configuration.specimen.value().shape.index()).name, std::abs(first_order.magnification),
+        first_order.numerical_aperture, columns, rows, um_per_mm * first_order.pixel_pitch,
+        configuration.instrument.spectrum.reference_um);
+}
+
 } // namespace
 
 StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument) {
-    return {.layout = report::layout_svg(instrument, folder_name(configuration.output_directory)),
+    return {.summary = summary_of(configuration, instrument),
+            .layout = report::layout_svg(instrument, folder_name(configuration.output_directory)),
             .configuration = configuration.canonical};
 }
 
@@ -36,6 +53,7 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     const int count = evaluation.diffracted ? 2 : 1;
     auto data = write_maps(folder, "", evaluation, stack.files, count);
     StackPage page{.title = folder_name(folder.path()),
+                   .summary = stack.source.summary,
                    .plain = {.figures = figures.get(), .dimensions = evaluation.dimensions, .data = std::move(data)},
                    .diffracted = {},
                    .frames = frames.get(),

@@ -18,6 +18,7 @@ namespace vkfv::measurement {
 
 // The parts of the report that do not come from the evaluation.
 struct StackSource {
+    std::string summary;       // specimen, instrument and light in one line; empty: not known
     std::string layout;        // the instrument as SVG; empty: not known
     std::string configuration; // TOML; empty: none
     scan::MeanLedger ledger{}; // light of the images; empty: not known

@@ -280,7 +280,10 @@ std::string stack_page(const StackPage& content) {
         evaluations.push_back(content.diffracted->data);
     }
     add_data(page, content.frames, evaluations, ledger_json(content.ledger));
-    return page.document(content.title);
+    const auto device = content.results.find("device");
+    return page.document(content.title, content.summary.empty() || device == content.results.end()
+                                            ? content.summary
+                                            : content.summary + " Traced by " + device->get<std::string>() + ".");
 }
 
 } // namespace vkfv::measurement

@@ -22,6 +22,7 @@ struct EvaluationPage {
 
 struct StackPage {
     std::string title;
+    std::string summary; // one line: what was measured, by what; empty: not known
     EvaluationPage plain;
     std::optional<EvaluationPage> diffracted;
     EvaluationData frames;

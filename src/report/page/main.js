@@ -16,4 +16,11 @@ showWide();
     window.addEventListener("beforeprint", again);
     window.addEventListener("afterprint", again);
 }
+{
+    // The page's bytes have no date, so that equal stacks have equal pages; the file has one.
+    const written = new Date(document.lastModified);
+    const day = [written.getFullYear(), written.getMonth() + 1, written.getDate()].map(part => String(part).padStart(2, "0")).join("-");
+    const summary = document.getElementById("summary");
+    if (summary !== null) { summary.textContent += ` Written on ${day}.`; }
+}
 document.documentElement.dataset.ready = "yes";
