@@ -1,4 +1,4 @@
-// vkfv --check prints every figure in both forms, and each warning where it belongs and nowhere else.
+// vkfv check prints every figure in both forms, and each warning where it belongs and nowhere else.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
