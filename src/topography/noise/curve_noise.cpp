@@ -56,7 +56,9 @@ double bend_of_index(int index, int count) {
     return least_bend * std::pow(most_bend / least_bend, static_cast<double>(index) / (count - 1));
 }
 
-// The curvature c of the Gaussian through three values, from bend = 2 - 2 exp(-c / 2) cosh(c x).
+// The curvature c, in 1 / steps^2, of the Gaussian through a curve's largest value and both its neighbours. bend: twice
+// the largest value less both neighbours, over the largest, so 2 - 2 exp(-c / 2) cosh(c offset). offset: steps from the
+// largest value to the Gaussian's maximum. Fixed-point iteration.
 double curvature_of(double bend, double offset) {
     double curvature = bend;
     const double rest = std::max(1e-3, 1 - bend / 2);
