@@ -271,7 +271,7 @@ TEST_F(KeptCheck, IsMadeAnewWhereAFileHasChanged) {
     square_with_corner("2"); // the file keeps its length
     const auto second = check(with_own);
     EXPECT_THAT(second.standard_output,
-                HasSubstr("-0.333333  highest")); // twice the value above, as the corner is twice as far
+                HasSubstr("-0.333333  highest")); // twice the value above: the corner is twice as high
     EXPECT_EQ(kept().size(), 1u);
     EXPECT_NE(kept(), files);
     write_file(own, replaced(read_file(objective), "radius_mm = 21.703026388210155", "radius_mm = 21.703026388210255"));
