@@ -59,7 +59,7 @@ def essence(name, text):
 
 
 def digest_of_files(files):
-    """Of the files' contents. Their names and their order do not matter."""
+    """The digest of the files' contents. Their names and their order do not matter."""
     parts = sorted(hashlib.sha256(essence(file.name, file.read_text(encoding="utf-8", errors="replace")).encode()).hexdigest()
                    for file in files)
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
@@ -80,7 +80,7 @@ def files_named(command):
 
 
 def digests(run, root=ROOT):
-    """By name, of all that a run depends on."""
+    """The digests of all that a run depends on, by name."""
     commands = [run["command"].replace("{each}", each) for each in run.get("each", [""])]
     named = [file for command in commands for file in (root / name for name in files_named(command)) if file.is_file()]
     found = {name: digest_of(name, root) for name in run.get("depends", [])}
@@ -169,7 +169,7 @@ class Page:
         return [f"{name}.{own}" for name, run in self.runs.items() for own in run.get(kind, {})]
 
     def value(self, name):
-        """Of a figure, the value without its uncertainty."""
+        """The value of a figure, without its uncertainty."""
         declared, record = self.entry(name, "figures")
         if declared and "formula" in declared:
             return self.formula(name, declared)
@@ -182,7 +182,7 @@ class Page:
         return eval(declared["formula"], {"__builtins__": {}, "min": min, "max": max, "round": round}, others | self.known(run))
 
     def known(self, run):
-        """What formulas know of a run: its figures, and its tables without uncertainties."""
+        """The names that a formula may use of a run: its figures, and its tables without uncertainties."""
         figures = {own: self.value(f"{run}.{own}") for own, other in self.runs[run].get("figures", {}).items() if "formula" not in other}
         return figures | {own: [[cell[0] if isinstance(cell, list) else cell for cell in row] for row in table["rows"]]
                           for own, table in self.records[run].get("tables", {}).items()}
@@ -205,7 +205,7 @@ class Page:
         return textwrap.fill(text, 150, break_long_words=False, break_on_hyphens=False) + "\n"
 
     def problems(self):
-        """What does not hold between list, records and page: a line each."""
+        """The disagreements between list, records and page: a line each."""
         found = [f"{name}: no record" for name in self.runs if name not in self.records]
         found += [f"{name}: a record that the list does not declare" for name in self.records if name not in self.runs]
         if found:
@@ -233,7 +233,7 @@ class Page:
                 yield f"{name}: {picture}: the page does not show it"
 
     def place_problems(self):
-        """Of all that the page states from a record."""
+        """The disagreements in the figures and tables that the page states from a record: a line each."""
         found, seen = [], set()
         for place in COMMENT.finditer(self.text):
             name, line = place[1], self.text.count("\n", 0, place.start()) + 1
@@ -295,7 +295,7 @@ class Page:
 
 
 class Known:
-    """What the formulas of other runs know of a run."""
+    """A run as the formulas of other runs see it: RUN.NAME is its figure or table of this name."""
 
     def __init__(self, page, run):
         self.page, self.run = page, run

@@ -62,7 +62,7 @@ namespace {
 // the first set of them is listed.
 class DescriptorFile {
   public:
-    // averaged: the number of images in a stack.
+    // bits: depth of a grey value. columns, rows: pixels of an image. averaged: how many images a stack averages.
     DescriptorFile(int bits, int columns, int rows, int averaged)
         : stacks_are_pairs_(averaged == 2),
           text_(fmt::format("# Images of a camera that vkfv simulates\nv 3.0\nn {} {} {}\n", bits, columns, rows)) {}

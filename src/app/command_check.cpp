@@ -43,8 +43,8 @@ Command check_command() {
 void run_check(const CommandOptions& options) {
     const bool with_forecast = options.of<CheckOptions>().forecast;
     if (options.out && !with_forecast) { // only a forecast depends on the folder
-        refuse_argument("--out with --check", "--forecast beside it, which looks at the disk of that folder",
-                        "Leave it out, add --forecast, or give it to --stack.");
+        refuse_argument("--out without --forecast", "--forecast beside it, which looks at the disk of that folder",
+                        "Leave it out, add --forecast, or give it to vkfv stack.");
     }
     const auto configuration =
         load_configuration(options.file, options.overrides, with_forecast ? Needs::exposure : Needs::instrument);

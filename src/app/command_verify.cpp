@@ -85,7 +85,7 @@ void run_verify(const CommandOptions& options) {
             {{.file = options.file},
              "",
              fmt::format("neither {} nor {}, here or in a folder below", checksums_name, scan::configuration_name),
-             "the output folder of --stack, --sweep, --topography, --compare or --bench",
+             "the output folder of vkfv stack, sweep, topography, compare or bench",
              "Give the folder that holds the results."});
     }
     std::size_t files = 0;

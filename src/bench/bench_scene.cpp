@@ -60,7 +60,7 @@ BenchScene::BenchScene(const BenchOptions& options)
                           .key = "trace.mode",
                           .found = "\"nonsequential\"",
                           .expected = "the sequential trace, which has stages to be timed",
-                          .remedy = "Use --set trace.mode=sequential, or time --image."});
+                          .remedy = "Use --set trace.mode=sequential, or time vkfv image."});
     }
     specimen_ = measurement::make_specimen(configuration_);
     instrument_ = instrument_of(configuration_, specimen_);

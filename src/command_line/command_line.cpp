@@ -203,7 +203,7 @@ class CommandLine {
         std::vector<std::string> measuring;
         for (const auto& command : all_commands()) {
             if (!command.about_vkfv) {
-                measuring.push_back("--" + command.name);
+                measuring.push_back(command.name);
             }
             if (!command.also_option || app_.count("--" + command.name) == 0) {
                 continue;

@@ -101,7 +101,7 @@ const KeyTable& sweep_keys() {
     static const KeyTable table{.path = "sweep",
                                 .presence = KeyTable::Presence::optional,
                                 .meaning =
-                                    "What vkfv --sweep varies: every combination of the parameters' values. The same "
+                                    "What vkfv sweep varies: every combination of the parameters' values. The same "
                                     "light is traced once for all cameras and evaluations.",
                                 .subject = "a sweep",
                                 .kind = "of",

@@ -166,7 +166,7 @@ struct LobeKeys {
     }
 
     ChoiceKey<std::size_t> scatter;   // index into scatter_registry
-    std::deque<NumberKey> parameters; // of all models together
+    std::deque<NumberKey> parameters; // those of all models
     NumberKey sq = of_kinds(
         {"abg", "harvey-shack"},
         NumberKey(

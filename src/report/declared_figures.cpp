@@ -18,7 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Units in which values are held by another unit inside, or which keys spell differently.
+// How a declared unit is spelled in keys, and the factor to it from the unit that vkfv computes in (mm, rad). Only
+// units with another spelling or a factor are listed.
 struct Unit {
     std::string_view declared;
     std::string_view in_keys;

@@ -24,7 +24,7 @@ namespace vkfv::scan {
 
 namespace {
 
-// Figures of an image, for programs that watch.
+// The fields of the log's line about an image, which programs that watch a run read (docs/cluster.md). z: mm.
 LogFields fields_of(int image, double z, const trace::Image& exposure) {
     double detected = 0, lost = 0;
     for (const auto& entry : exposure.ledger.entries) {
@@ -114,7 +114,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         auto to_begin = to_trace.begin();
         auto to_take = to_trace.begin();
         auto last = std::chrono::steady_clock::now();
-        std::vector<double> device_ends; // end of the previous image on each device
+        std::vector<double> device_ends; // when the previous image ended on each device, s
         for (const int image : of_shard) {
             const double z = positions[static_cast<std::size_t>(image)];
             if (to_take == to_trace.end() || *to_take != image) {
@@ -132,7 +132,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
             }
             auto exposure = std::make_shared<trace::Image>(under_way.front().get());
             under_way.pop_front();
-            // An image counts the wall clock that no image before it has counted.
+            // Exposures overlap, so an image counts only the time since the image before it ended.
             const auto now = std::chrono::steady_clock::now();
             exposure->seconds = std::min(exposure->seconds, std::chrono::duration<double>(now - last).count());
             last = now;

@@ -84,7 +84,7 @@ std::string digest_in(std::string_view stack_text) {
 
 std::string stack_text(const StackDescription& description) {
     std::string text =
-        fmt::format("# A stack of vkfv: its configuration, every default spelled out. `vkfv --stack` takes this file.\n"
+        fmt::format("# A stack of vkfv: its configuration, every default spelled out. `vkfv stack` takes this file.\n"
                     "# What its images depend on{}{}); a run that differs in any of it is refused here:\n",
                     digest_label, description.digest);
     for (const std::string& line : lines_of(description.identity)) {

@@ -1081,7 +1081,7 @@ std::vector<Case> cases() {
          2,
          {"--set with --compare", "--stack"},
          {"--compare", "a.x3p", "b.x3p", "--set", "trace.seed=5"}},
-        {"OutElsewhere", {}, 2, {"--out with --check", "--stack"}, {"--check", "c.toml", "--out", "o"}},
+        {"OutElsewhere", {}, 2, {"--out without --forecast", "vkfv stack"}, {"--check", "c.toml", "--out", "o"}},
         {"JsonElsewhere", {}, 2, {"--json with --layout", "--check"}, {"--layout", "c.toml", "l.svg", "--json"}},
         {"AlignElsewhere", {}, 2, {"--align with --check", "--compare"}, {"--check", "c.toml", "--align"}},
         {"ShuffleElsewhere",

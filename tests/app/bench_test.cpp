@@ -1,4 +1,4 @@
-// vkfv --bench runs as a user calls it, and agrees with its peer.
+// vkfv bench runs as a user calls it, and agrees with its peer.
 #include "app/program.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// vkfv --check prints every figure in both forms, and each warning where it belongs and nowhere else.
+// vkfv check prints every figure in both forms, and each warning where it belongs and nowhere else.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -268,9 +268,10 @@ TEST_F(KeptCheck, IsMadeAnewWhereAFileHasChanged) {
     const auto files = kept();
     EXPECT_EQ(check(with_own).standard_output, first.standard_output);
     EXPECT_EQ(kept(), files);
-    square_with_corner("2"); // as many bytes
+    square_with_corner("2"); // the file keeps its length
     const auto second = check(with_own);
-    EXPECT_THAT(second.standard_output, HasSubstr("-0.333333  highest")); // likewise twice
+    EXPECT_THAT(second.standard_output,
+                HasSubstr("-0.333333  highest")); // twice the value above: the corner is twice as high
     EXPECT_EQ(kept().size(), 1u);
     EXPECT_NE(kept(), files);
     write_file(own, replaced(read_file(objective), "radius_mm = 21.703026388210155", "radius_mm = 21.703026388210255"));

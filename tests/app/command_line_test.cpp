@@ -261,7 +261,7 @@ TEST(CommandLine, BashCompletes) {
         {"vkfv list gl", "glasses\n"},
         {"vkfv --camera de", "demo one.toml\n"}, // the command, and not the option of `vkfv new`
         {"vkfv stack x --set trace.est", "trace.estimator=\n"},
-        {"vkfv stack x --set trace.estimator = ba", "backward\n"}, // as bash parts words
+        {"vkfv stack x --set trace.estimator = ba", "backward\n"}, // bash parts words at "="
         {"vkfv stack x --set trace.estimator = ''", "forward\nbackward\n"},
         {"vkfv stack x --set trace.estimator =", "forward\nbackward\n"},
         {"vkfv stack x --set trace.estimator=ba", "trace.estimator=backward\n"}, // where \"=\" parts none

@@ -1,4 +1,4 @@
-// vkfv --compare, through the real program, finds the deviation of maps that differ by known waves, shifts and noise.
+// vkfv compare, through the real program, finds the deviation of maps that differ by known waves, shifts and noise.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 #include "support/surface_files.hpp"
@@ -202,7 +202,7 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
     write_map(folder / "other.tif", 100, 0, 1, 0, 0, 0);
     const auto grids = run_program({"--compare", "measured_0.tif", "other.tif", "truth.tif"}, folder);
     EXPECT_EQ(grids.exit_code, 2);
-    EXPECT_THAT(grids.standard_error, HasSubstr("other.tif: --compare = 100 x 100 points"));
+    EXPECT_THAT(grids.standard_error, HasSubstr("other.tif: vkfv compare = 100 x 100 points"));
 
     HeightMap elsewhere = surface::read_height_map(folder / "truth.tif");
     elsewhere.x0 += 1;

@@ -384,7 +384,7 @@ TEST(Configuration, RingLightsAimAtTheWholeSpecimen) {
     specimen.geometry = specimen::HeightField{Grid<float>(3, 3, 0.0f), -1, -1, 1.5, 2.5}; // to x = 2 and y = 4
     const std::vector<double> heights = {0};
     const double lit = std::hypot(2.0, 4.0);
-    const double reach = lit + 1; // and half the band
+    const double reach = lit + 1; // half the width of the band is added
     // The surface is flat: the 1e-9 leave room for the rounding alone that the specimen's top is raised by.
     EXPECT_NEAR(assemble_instrument(configuration, specimen, heights).constants.emission_sine,
                 reach / std::hypot(reach, 12 - lit), 1e-9);
@@ -648,8 +648,8 @@ TEST(Configuration, ResultsOfAnInstalledExampleGoWhereTheyAreAskedFor) {
     const auto named = place({{"output.directory", "\"demo\"", "--out"}});
     const auto elsewhere = place({{"output.directory", "\"/tmp/demo\"", "--out"}});
     std::filesystem::current_path(before);
-    EXPECT_EQ(usual, "demo-out"); // as the example says, here
-    EXPECT_EQ(named, "demo");     // was empty once, and could not be made
+    EXPECT_EQ(usual, "demo-out"); // the example's value, relative to this folder
+    EXPECT_EQ(named, "demo");     // not empty: such a folder could not be made
     EXPECT_EQ(elsewhere, "/tmp/demo");
 }
 

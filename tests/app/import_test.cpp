@@ -1,4 +1,4 @@
-// vkfv --import, through the real program, keeps closed-form focal lengths.
+// vkfv import, through the real program, keeps closed-form focal lengths.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// vkfv --layout draws the instrument, through the real program.
+// vkfv layout draws the instrument, through the real program.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>

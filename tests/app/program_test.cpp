@@ -246,7 +246,7 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
         EXPECT_TRUE(results.contains(name)) << name;
     }
     EXPECT_GT(results["measured_share"].get<double>(), 0);
-    // Of the same points, levelled: Sq by way of the parameters is that of the comparison.
+    // Parameters and comparison take the same levelled points, so their Sq agrees.
     EXPECT_NEAR(results["parameters"]["Sq_um"]["measured"].get<double>(), results["sq_measured_um"].get<double>(),
                 1e-9);
     EXPECT_NEAR(results["parameters"]["Sq_um"]["true"].get<double>(), results["sq_true_um"].get<double>(), 1e-9);
@@ -267,7 +267,7 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
     EXPECT_NE(read_file(folder / "out/topography.tif"), height_map);
     EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["filtered"]["l_filter_um"], 10.0);
     EXPECT_THAT(read_file(folder / "out/report.html"), HasSubstr("L-filter 10 µm"));
-    // What the images depend on has been decided.
+    // A key that the images depend on cannot be changed afterwards.
     for (const char* setting : {"detector.size_mm=2.5", "specimen.material.g=0.1", "trace.seed=99"}) {
         const auto changed = run_program({"--topography", "out", "--set", setting}, folder);
         EXPECT_EQ(changed.exit_code, 2) << setting;
@@ -299,7 +299,7 @@ TEST(Program, HeightsAreWrittenInEveryFormatAndAllMapsInOneFile) {
          {"Height", "True height", "Deviation", "Noise of the height", "Contrast", "All in focus"}) {
         EXPECT_THAT(all, HasSubstr(title));
     }
-    EXPECT_THAT(all, HasSubstr(std::string("unitstr\0sW\0", 11))); // of the all-in-focus image
+    EXPECT_THAT(all, HasSubstr(std::string("unitstr\0sW\0", 11))); // the unit of the all-in-focus image
 }
 
 TEST(Program, AStackOfAnotherConfigurationIsRefusedWithTheDifference) {

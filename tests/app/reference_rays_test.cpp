@@ -33,7 +33,7 @@ std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
 // not.
 struct Differences {
     double position = 0;  // mm
-    double direction = 0; // of a cosine
+    double direction = 0; // largest difference of a direction cosine
     double path = 0;      // mm
     int apertures = 0;
     int rays = 0;

@@ -65,7 +65,7 @@ TEST_F(StageStack, HasTheSameBytesInOneRunResumedAndInShards) {
     }
     ASSERT_EQ(run_program({"merge", "shards"}, folder_).exit_code, 0);
     for (const auto& [file, bytes] : one) {
-        if (file != "stack.toml" && file != ".stack.toml") { // which tell of one run
+        if (file != "stack.toml" && file != ".stack.toml") { // these two record a single run
             EXPECT_EQ(read_file(folder_ / "shards" / file), bytes) << file;
         }
     }

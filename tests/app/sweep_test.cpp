@@ -1,4 +1,4 @@
-// vkfv --sweep traces every combination once, with the noise that its rays make.
+// vkfv sweep traces every combination once, with the noise that its rays make.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
 

@@ -1,4 +1,4 @@
-// vkfv --verify finds damaged files, and the next run makes them again.
+// vkfv verify finds damaged files, and the next run makes them again.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>

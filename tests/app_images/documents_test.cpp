@@ -240,7 +240,7 @@ TEST(Documents, CommandsInBackticksExist) {
     EXPECT_THAT(unknown_words("vkfv stak C.toml"), testing::ElementsAre("stak"));
     EXPECT_THAT(unknown_words("vkfv stack C.toml --align"), testing::ElementsAre("--align"));
     for (const auto& file : documents()) {
-        if (file.filename() == "CHANGELOG.md") { // of its time
+        if (file.filename() == "CHANGELOG.md") { // it names commands of earlier versions
             continue;
         }
         for (const auto& [code, line] : parse_document(read_file(file)).code) {
@@ -355,7 +355,7 @@ std::vector<std::string> failures_of(const std::string& text, const fs::path& fo
     }
     std::vector<std::string> failures;
     std::set<std::string> done;
-    std::string variables; // that lines before have set
+    std::string variables; // assignments of earlier lines
     for (const auto& block : parse_document(text).blocks) {
         if (!block.language.empty()) {
             continue;

@@ -89,7 +89,7 @@ struct Kind {
     std::string name; // of the file
     Write write;
     double white = 255;   // the value that 255 is stored as
-    double tolerance = 0; // of 255: what the format itself loses
+    double tolerance = 0; // error of the format itself, where white is 255
     bool grey = true;     // colours of lossy formats need not be
 };
 
@@ -123,7 +123,7 @@ void write_by_library(const fs::path& path, const Picture& picture, const ByLibr
     for (const auto& [name, value] : how.numbers) {
         name == "tile" ? spec.tile_width = spec.tile_height = value : (spec.attribute(name, value), 0);
     }
-    const auto values = scaled<double>(picture, 1, how.channels); // of 1, which the library takes for white
+    const auto values = scaled<double>(picture, 1, how.channels); // values from 0 to 1, the library's white
     ASSERT_TRUE(output->open(path.string(), spec)) << output->geterror();
     ASSERT_TRUE(output->write_image(OIIO::TypeDesc::DOUBLE, values.data())) << output->geterror();
     ASSERT_TRUE(output->close()) << output->geterror();

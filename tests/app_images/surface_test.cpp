@@ -1,4 +1,4 @@
-// vkfv --surface, through the real program, finds the parameters that closed forms give.
+// vkfv surface, through the real program, finds the parameters that closed forms give.
 #include "app/program.hpp"
 #include "core/mathematics/units.hpp"
 #include "images/image_file.hpp"

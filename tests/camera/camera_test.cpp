@@ -90,7 +90,7 @@ TEST(Camera, ChargeAndGreyValuesEnd) {
     options.offset = 0;
     options.read_noise = 100;
     const auto dark = image_of(options, 0);
-    EXPECT_GT(dark.mean, 0); // what is below 0 is 0
+    EXPECT_GT(dark.mean, 0); // values below 0 are clipped to 0
 }
 
 // A filter of waves leaves some pixels below zero. A camera counts no electrons there, and its dark charge as anywhere.

@@ -106,7 +106,7 @@ std::string toml(double value) {
 
 // Values that the declaration forbids.
 std::vector<std::string> wrong_values(const Key& key) {
-    std::vector<std::string> beside; // of the range
+    std::vector<std::string> beside; // values just outside the range
     const NumberRange& range = key.range;
     for (const auto& [end, included, outward] : {std::tuple(range.minimum, range.minimum_included, -1),
                                                  std::tuple(range.maximum, range.maximum_included, 1)}) {

@@ -58,7 +58,7 @@ TEST_F(FilesReadTest, ChangesShowHoweverTheyAreMade) {
     EXPECT_TRUE(changed(stamp_of("a"), [&] { write("a", "longer"); }));
     EXPECT_TRUE(changed(stamp_of("a"), [&] {
         const auto time = fs::last_write_time(folder_ / "a");
-        write("a", "equall"); // as long, and its time set back
+        write("a", "equall"); // the same length; the next line sets the time back
         fs::last_write_time(folder_ / "a", time);
     }));
     EXPECT_TRUE(changed(stamp_of("a"), [&] { fs::rename(folder_ / "b", folder_ / "a"); }));

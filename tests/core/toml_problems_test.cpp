@@ -173,7 +173,7 @@ TEST(TomlProblems, ErrorsOfOtherFilesStandBehind) {
     } catch (const InputError& error) {
         ASSERT_EQ(error.problems().size(), 3u);
         EXPECT_EQ(error.problem().key, "size");
-        EXPECT_EQ(error.problems()[1].key, "a"); // as that file told them
+        EXPECT_EQ(error.problems()[1].key, "a"); // in the order of the error, not of its lines
         EXPECT_THAT(error.with_each([](InputProblem& problem) { problem.key = "z"; }).what(),
                     StartsWith("c.toml:2:8: z = 0"));
     }

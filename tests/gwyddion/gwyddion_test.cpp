@@ -59,7 +59,7 @@ HeightMap letter() {
 
 // The precision with which a format keeps a map. Gwyddion shows a field's first row on top.
 struct Kept {
-    double unit = 1e-3;    // of Gwyddion's heights per mm
+    double unit = 1e-3;    // mm in a unit of Gwyddion's heights
     double height = 1e-20; // largest deviation of a height there
     double pitch = 0;      // and of a pitch, relative; infinite: the format's import knows none
     bool mask = true;

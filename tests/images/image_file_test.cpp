@@ -251,7 +251,7 @@ TEST_F(ImageFile, ChannelsComeBackOneByOne) {
     ASSERT_EQ(read.size(), 3u);
     for (std::size_t channel = 0; channel < 3; ++channel)
         EXPECT_EQ(read[channel].values, channels[channel].values);
-    EXPECT_THROW(read_image(path), InputError); // of grey alone
+    EXPECT_THROW(read_image(path), InputError); // read_image() takes images with one channel
     write_tiff(path, channels[1]);
     EXPECT_EQ(read_channels(path).size(), 1u);
 }

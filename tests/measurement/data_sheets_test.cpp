@@ -31,7 +31,7 @@ std::string tube_lens_of(double focal_length) {
 }
 
 struct Objective {
-    const char* name; // and who states the figures
+    const char* name; // with the maker who states the figures
     double magnification, numerical_aperture, tube_length, working_distance, focal_length;
     const char* immersion;
 };

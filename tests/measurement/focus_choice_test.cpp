@@ -22,7 +22,7 @@ TEST(FocusChoice, IsByTheConfigurationOfOwnStacks) {
     EXPECT_EQ(measure_of("plane.toml"), wavelet); // no camera
     EXPECT_EQ(measure_of("plane.toml", {{"topography.focus_measure", "\"auto\"", ""}}), wavelet);
     EXPECT_EQ(measure_of("plane.toml", {{"topography.focus_measure", "\"brenner\"", ""}}), brenner);
-    EXPECT_EQ(measure_of("own_microscope.toml"), modified_laplacian); // that it names
+    EXPECT_EQ(measure_of("own_microscope.toml"), modified_laplacian); // the file names this measure
 }
 
 } // namespace

@@ -154,7 +154,7 @@ TEST(PhaseLimits, ContrastIsOffByWhatLightLacksOfAFilledPupil) {
     EXPECT_NEAR(limits_of(0.2, sinusoid(0.001, of_model("lambertian"))).contrast_error, 0, of_cells);
     const specimen::Material half_mirror{{{.model = "mirror", .weight = 0.5, .parameters = {}},
                                           {.model = "lambertian", .weight = 0.5, .parameters = {}}}};
-    const double lambertian_light = aperture * aperture; // that enters the pupil, over that of the mirror
+    const double lambertian_light = aperture * aperture; // light in the pupil, over the mirror's
     EXPECT_NEAR(limits_of(0.3, sinusoid(0.001, half_mirror)).contrast_error,
                 error_of_disc(0.3) / (1 + lambertian_light), of_cells);
 }

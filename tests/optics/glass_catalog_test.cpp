@@ -247,7 +247,7 @@ TEST(GlassCatalog, CataloguesAgreeToAMillionthOfTheIndexWhereTheLensIsUsed) {
             "b.agf");
         return glasses;
     };
-    EXPECT_EQ(both(9e-7, "").get("G").index(0.5), 1.5); // of the first by name
+    EXPECT_EQ(both(9e-7, "").get("G").index(0.5), 1.5); // the index of the first catalogue by name
     EXPECT_THROW(both(1.1e-6, "").get("G"), InputError);
     // Two catalogues that agree at one wavelength alone are refused unless it is the only one used: their difference
     // 0.001 / x - 0.002 is 0 at x = 0.5 um.

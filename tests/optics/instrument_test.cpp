@@ -285,7 +285,7 @@ TEST(Gate, HoldsAllThatIsDetected) {
             const double sine = reach * std::sqrt(1 - 0.4 * std::abs(uniform(generator)));
             const double azimuth = pi * uniform(generator);
             const glm::dvec3 direction(sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine));
-            const double top = 0.2 * uniform(generator); // of the top plane, above best focus
+            const double top = 0.2 * uniform(generator); // height of the top plane above best focus, mm
             const double below = 0.05 * std::abs(uniform(generator));
             // Rays are aimed at the plane of focus, so that they may be detected.
             const glm::dvec3 aim(field * uniform(generator), field * uniform(generator), 0);

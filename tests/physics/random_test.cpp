@@ -26,7 +26,7 @@ TEST(Random, PhiloxGivesThePublishedAnswers) {
 
 namespace {
 
-using Numbers = std::array<std::uint32_t, 6>; // of 21 bits
+using Numbers = std::array<std::uint32_t, 6>; // numbers of 21 bits
 
 // A generator of random words: a function of (seed, image, path, block).
 using Generator = std::function<uvec4(uint, uint, uint, uint)>;

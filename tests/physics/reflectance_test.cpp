@@ -173,8 +173,9 @@ TEST(Reflectance, AGridIsLinearBetweenItsPointsAndGoesOnMirrored) {
     const auto at = [&](double column, double row) {
         return grid(0.5 + (column - 1.5) * 0.1, -0.2 + (row - 1.0) * 0.1);
     };
-    const std::array<int, 12> columns = {3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0}; // of the numbers -4 to 7
-    const std::array<int, 12> rows = {2, 2, 1, 0, 0, 1, 2, 2, 1, 0, 0, 1};    // of -4 to 7
+    const std::array<int, 12> columns = {3, 2, 1, 0, 0, 1,
+                                         2, 3, 3, 2, 1, 0};                // expected columns for the numbers -4 to 7
+    const std::array<int, 12> rows = {2, 2, 1, 0, 0, 1, 2, 2, 1, 0, 0, 1}; // expected rows for -4 to 7
     const auto value = [&](int column, int row) {
         return grid.pattern_point(grid.record, columns[static_cast<std::size_t>(column + 4)],
                                   rows[static_cast<std::size_t>(row + 4)]);

@@ -33,7 +33,7 @@ TEST_F(HalfDone, ComeBackAsTheyWereKept) {
     EXPECT_FALSE(files().load(8));
     files().drop(7);
     EXPECT_FALSE(files().load(7));
-    files().drop(7); // of nothing
+    files().drop(7); // there is no file to drop
 }
 
 TEST_F(HalfDone, OfAnotherExposureAreNotTakenUp) {
@@ -67,7 +67,7 @@ TEST_F(HalfDone, ADiskThatRefusesThemEndsNothing) {
     EXPECT_NO_THROW(nowhere.save(0, checkpoint_));
     std::filesystem::remove_all(folder_.path());
     EXPECT_NO_THROW(files().save(7, checkpoint_));
-    EXPECT_FALSE(std::filesystem::exists(folder_.path())); // which would lack all else
+    EXPECT_FALSE(std::filesystem::exists(folder_.path())); // a new folder would lack all other files
 }
 
 } // namespace

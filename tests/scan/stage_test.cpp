@@ -108,7 +108,7 @@ TEST(Stage, TellsHowFarAstrayImagesBeyondTheScanAreToo) {
     const std::vector<double> with_further = {0, 0.001, 0.002, 0.01};
     Stage stage;
     stage.jitter = 0.0003;
-    int farther = 0; // than any of the scan's
+    int farther = 0; // seeds with a moment beyond all positions of the scan
     for (stage.seed = 1; stage.seed <= 40; ++stage.seed) {
         const StageMotion motion(stage, scan);
         const double beyond = std::abs(motion.at(with_further[3], 3).height - with_further[3]);

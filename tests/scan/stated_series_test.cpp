@@ -100,7 +100,7 @@ TEST(StatedSeries, HasUnitsOfEachAxis) {
         .description = "ImageJ=1.53t\nimages=3\nslices=3\n", .columns_per_unit = 5000, .rows_per_unit = 5000};
     by_tags.unit = ImageStatement::Unit::centimetre;
     EXPECT_NEAR(stated_series(by_tags, 3, file).pitch_x.value(), 2e-3, 1e-15);
-    by_tags.description += "unit=um\nspacing=2\n"; // as the frames of vkfv's own stacks
+    by_tags.description += "unit=um\nspacing=2\n"; // the statement in frames of vkfv's own stacks
     EXPECT_NEAR(stated_series(by_tags, 3, file).pitch_x.value(), 2e-3, 1e-15);
     EXPECT_NEAR(stated_series(by_tags, 3, file).z_step.value(), 2e-3, 1e-15);
 }
@@ -181,7 +181,7 @@ TEST(StatedSeries, TakesThePlanesOwnHeights) {
     EXPECT_NEAR(descending.z_step.value(), -2e-3, 1e-15);
     EXPECT_NEAR(descending.z_start.value(), 8e-3, 1e-15);
     EXPECT_TRUE(descending.doubts.empty());
-    EXPECT_NEAR(planes({8, 6, 4}, "").z_step.value(), 5e-3, 1e-15); // of a frame that has no unit
+    EXPECT_NEAR(planes({8, 6, 4}, "").z_step.value(), 5e-3, 1e-15); // without a unit the positions do not count
     EXPECT_NEAR(planes({8, 8, 8}, "\xc2\xb5m").z_step.value(), 5e-3, 1e-15);
     EXPECT_THAT(planes({8, 7, 4}, "\xc2\xb5m").doubts, testing::ElementsAre(testing::HasSubstr("equal steps")));
 }

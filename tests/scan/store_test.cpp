@@ -210,7 +210,7 @@ TEST(ImageStore, ShardsOfSeparateFoldersMakeOneStack) {
     {
         ImageStore merged(even.path(), describe());
         EXPECT_FALSE(merged.complete());
-        EXPECT_FALSE(merged.take(2, odd.path())); // of the even ones
+        EXPECT_FALSE(merged.take(2, odd.path())); // image 2 belongs to the even shard
         EXPECT_TRUE(merged.take(1, odd.path()));
         EXPECT_TRUE(merged.take(3, odd.path()));
         EXPECT_TRUE(merged.complete());

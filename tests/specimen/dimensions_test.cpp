@@ -61,7 +61,7 @@ TEST(StandardsAsSold, RootMeanSquaresAreThoseOfClosedForms) {
     lines.period = 0.05;
     lines.depth = 0.002;
     lines.line_width = 0.02;
-    lines.wall = 0.01; // of each of two flanks a sixth is missing from the mean square
+    lines.wall = 0.01; // a sixth of each of the two flanks is missing from the mean square
     EXPECT_NEAR(sq_of(lines), 0.002 * std::sqrt(0.4 * 0.6 - 0.2 / 3), 5e-6);
     auto texture = over<Deterministic>(0.32, 0.001);
     texture.period = 0.1;

@@ -298,7 +298,7 @@ TEST_F(Gltf, InstancesStandWhereTheyArePlaced) {
         const std::vector<glm::dvec3> expected = {{10, 0, 100}, {11, 0, 100}, {10, 2, 100.5},
                                                   {0, 20, 100}, {0, 22, 100}, {-6, 20, 102}};
         for (std::size_t k = 0; k < expected.size(); ++k) {
-            EXPECT_NEAR(glm::length(mesh.vertices[k] - expected[k]), 0, 1e-3) << k; // of shorts
+            EXPECT_NEAR(glm::length(mesh.vertices[k] - expected[k]), 0, 1e-3) << k; // the vertices are 16-bit integers
         }
     }
     const auto refused = [&](const std::string& from, const std::string& to) {

@@ -195,13 +195,13 @@ TEST_F(ScatteredPoints, SurfaceIsThatOfThePointsWithinTheInterpolationsBound) {
     // With a = 2 pi x / period, and b alike, the second derivative along (u, v) is at most |cos a cos b| + 2 |u v sin a
     // sin b| <= 1 times this.
     const double curvature = amplitude * std::pow(2 * pi / period, 2);
-    auto places = random_points(1500, 7); // of +-50 um
+    auto places = random_points(1500, 7); // within +-50 um
     std::string text = "x y z\n";
     for (glm::dvec2& place : places) {
         place *= 50.0;
         text += fmt::format("{} {} {}\n", place.x, place.y, height(place));
     }
-    double radius = 0; // of the largest of these circles
+    double radius = 0; // radius of the largest of these circles
     for (const glm::uvec3& t : delaunay(places).triangles) {
         const glm::dvec2 corners[3] = {places[t.x], places[t.y], places[t.z]};
         double longest = 0, others = 0;
@@ -214,7 +214,7 @@ TEST_F(ScatteredPoints, SurfaceIsThatOfThePointsWithinTheInterpolationsBound) {
         const auto is_inside = [](const glm::dvec2& corner) {
             return std::max(std::abs(corner.x), std::abs(corner.y)) < 45;
         };
-        if (std::ranges::all_of(corners, is_inside)) { // of the border's long triangles
+        if (std::ranges::all_of(corners, is_inside)) { // leaves out the long triangles of the border
             radius = std::max(radius, obtuse ? 0.5 * std::sqrt(longest)
                                              : circle_through(corners[0], corners[1], corners[2]).radius);
         }
@@ -229,7 +229,7 @@ TEST_F(ScatteredPoints, SurfaceIsThatOfThePointsWithinTheInterpolationsBound) {
         largest = std::max(largest, std::abs(seen - height(place)));
         largest_of_twin = std::max(largest_of_twin, std::abs(seen - height({place.y, place.x + 5})));
     }
-    EXPECT_LE(largest, bound + 1e-4); // and the rounding to float
+    EXPECT_LE(largest, bound + 1e-4); // the second term allows for rounding to float
     EXPECT_GT(largest, 0.02 * bound);
     EXPECT_GT(largest_of_twin, bound); // wrong twin: turned and moved by an eighth of the period
 }
@@ -311,7 +311,8 @@ TEST_F(ScatteredPoints, UnitsInTheNamesOfColumnsAndMarksAreUsed) {
         const Specimen specimen = make({.shape = points});
         EXPECT_NEAR(record(specimen, 1).x_max - record(specimen, 1).x_min, 0.01, 1e-8) << unit;
         const auto heights = truth(specimen, 1, 1, 0.0049, 0.0049, 1e-6, 1e-6).height;
-        EXPECT_NEAR(heights(0, 0), 1e-3 + 0.1 * 0.0049 + 0.2 * 0.0049, 1e-7) << unit; // of the plane through the points
+        EXPECT_NEAR(heights(0, 0), 1e-3 + 0.1 * 0.0049 + 0.2 * 0.0049, 1e-7)
+            << unit; // the height of the plane through the points
     }
 }
 

@@ -143,7 +143,7 @@ TEST(MaterialRatio, OfASphereCapHasTheVolumeOfItsTop) {
     const MaterialRatioCurve curve(map);
     // A tenth of the base lies below a cap of the height h.
     const double h = r - std::sqrt(r * r - 0.1 * a * a);
-    const double lattice = 1e-3; // of the area of a disc of 126 pitches: 50 of 50 000 points
+    const double lattice = 1e-3; // error of a disc's area on 50 000 points: 50 points
     EXPECT_NEAR(curve.height(0.1), r - h, lattice * h);
     EXPECT_NEAR(volume_parameters(curve).vmp, h * h * (3 * r - h) / 3 / (a * a), 0.1 * 2 * lattice * h);
 }

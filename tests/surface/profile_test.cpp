@@ -60,7 +60,7 @@ TEST(Profile, ParametersOfASampledSinusoid) {
     for (int k = 0; k < 400; ++k)
         wave.height.push_back(0.7 + amplitude * std::sin(2 * pi * k / n));
     const ProfileParameters p = profile_parameters(wave);
-    EXPECT_NEAR(p.ra, amplitude * 2 / n / std::tan(pi / n), 1e-14); // as Sa of such points
+    EXPECT_NEAR(p.ra, amplitude * 2 / n / std::tan(pi / n), 1e-14); // closed form for points at k / n of the period
     EXPECT_NEAR(p.rq, amplitude / std::sqrt(2.0), 1e-14);
     EXPECT_NEAR(p.rz, 2 * amplitude, 1e-14);
 }

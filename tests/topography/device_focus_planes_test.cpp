@@ -87,7 +87,7 @@ void expect_near(const topography::Topography& host, const topography::Topograph
     for (std::size_t k = 0; k < host.curves.values.size(); ++k)
         EXPECT_NEAR(device.curves.values[k] / host.curves.values[k], 1, 10 * value_bound) << which;
     EXPECT_GT(compared, columns * rows * 9 / 10) << which;
-    EXPECT_LE(other_image, 2) << which; // of 1073
+    EXPECT_LE(other_image, 2) << which; // points of 1073
 }
 
 // Compares numbers bit by bit; values that are not a number are alike too.

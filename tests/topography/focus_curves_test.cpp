@@ -71,7 +71,7 @@ TEST(FocusCurves, AreThoseOfTheDefinition) {
                                                      options.focus_measure.value(), window, curves.columns[column],
                                                      curves.rows[row]);
                 const std::size_t place = curves.index(column, row) * curves.z.size() + static_cast<std::size_t>(at);
-                EXPECT_NEAR(curves.values[place], value, 2e-6 * value); // of floats
+                EXPECT_NEAR(curves.values[place], value, 2e-6 * value); // a few roundings of float
             }
 }
 

@@ -102,7 +102,7 @@ TEST(HeightUncertainty, IsTheErrorOfWindowsWhosePixelsErrAlone) {
             EXPECT_NEAR(root_mean_square(found, width) / error, 1, 0.04);
             EXPECT_NEAR(root_mean_square(found) / error, 1, 0.05); // with the border
             const double beyond = share_beyond({.height = height}, found, 3);
-            EXPECT_LT(beyond, 0.02); // of a normal error 0.003, were its standard deviation known
+            EXPECT_LT(beyond, 0.02); // 0.003 for normal errors with a known standard deviation
         }
     }
 }

@@ -40,7 +40,7 @@ TEST(TexturePlace, ARampIsCarriedByTheTexturesDistanceTimesItsSlope) {
     const OneLine scene;
     Grid<double> height = scene.truth;
     place_by_texture(height, {scene.image}, FocusMeasure::modified_laplacian, FocusWindow(5, WindowShape::box));
-    for (const int d : {-1, 0, 1}) { // of the line and the columns beside it, whole within the window
+    for (const int d : {-1, 0, 1}) { // the line and the columns beside it: their windows hold all of it
         const int column = OneLine::line + d, row = 15;
         EXPECT_NEAR(height(column, row), scene.truth(column, row) + OneLine::slope_x * d, 1e-9);
     }

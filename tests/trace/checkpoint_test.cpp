@@ -131,7 +131,7 @@ TEST_P(Checkpoint, PartsOfSeveralDevicesGiveTheSameBits) {
     const trace::Image joined = same.get();
     expect_same(whole, joined);
     EXPECT_GT(joined.device_seconds, 0);
-    EXPECT_GE(joined.seconds, joined.device_seconds); // of the whole, not of its last step
+    EXPECT_GE(joined.seconds, joined.device_seconds); // both are times of the whole exposure, not of its last step
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -104,7 +104,7 @@ TEST(DetectorAim, HostAndDeviceTraceTheSamePaths) {
     const auto specimen = high_specimen();
     constexpr std::uint32_t paths = 1'000'000;
     auto with = once();
-    with.rays = paths; // of all of the image
+    with.rays = paths; // paths of the whole image
     const auto host = trace::host_paths(instrument, specimen, with, 0.002, 7, 0, paths);
     const auto device = trace::device_paths(instrument, specimen, with, 0.002, 7, 0, paths);
     std::uint32_t differing = 0, detected = 0;

@@ -89,7 +89,7 @@ TEST(EntryNodes, HoldAllThatIsOverACellAndItsNeighbours) {
     }
     EXPECT_EQ(missed, 0);
     EXPECT_GT(missed_by_twin, 100);
-    EXPECT_GT(below_root, 1 << (2 * entries.finest_level - 1)); // of most cells
+    EXPECT_GT(below_root, 1 << (2 * entries.finest_level - 1)); // most cells enter below the root
 }
 
 } // namespace vkfv::trace

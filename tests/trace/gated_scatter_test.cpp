@@ -147,7 +147,7 @@ TEST(GatedScatter, IsUsedWhereItIsExactAlone) {
     const auto hg = [](double g) { return specimen::tabulated({SCATTER_HENYEY_GREENSTEIN, 1, g, 0, 0, 0, {}}); };
     EXPECT_TRUE(applies(hg(0.3), disc_of_10x(), 0));
     EXPECT_TRUE(applies(hg(0.95), disc_of_10x(), 0));    // by the cone: its density times the gate exceeds 1
-    EXPECT_FALSE(applies(hg(0.95), disc_of_10x(), 0.2)); // so does what a cone with all of the gate holds
+    EXPECT_FALSE(applies(hg(0.95), disc_of_10x(), 0.2)); // a cone around the whole gate exceeds 1 too
     EXPECT_TRUE(applies(hg(0.95), disc_of_10x(), 0.5));  // the lobe's middle is far from the gate
     EXPECT_FALSE(applies(hg(0.3), disc_of_10x(10), 0));
     EXPECT_FALSE(applies(hg(1), disc_of_10x(), 0));

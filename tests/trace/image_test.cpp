@@ -124,7 +124,7 @@ TEST(Image, TheLedgerGivesEachLossThePowerItCarried) {
     };
     EXPECT_NEAR(power_per_ray("vignetted at illumination 3"), 1.0, 1e-12);  // the field stop
     EXPECT_NEAR(power_per_ray("vignetted at illumination 11"), 0.3, 1e-12); // the objective's stop, on the way down
-    EXPECT_NEAR(power_per_ray("vignetted at imaging 7"), 0.3, 1e-12);       // and on the way up
+    EXPECT_NEAR(power_per_ray("vignetted at imaging 7"), 0.3, 1e-12);       // the same stop, on the way up
     EXPECT_NEAR(power_per_ray("escaped outside the pupil"), 0.3, 1e-12);
     EXPECT_NEAR(power_per_ray("beside the detector"), 0.21, 1e-12);
     EXPECT_NEAR(power_per_ray("detected"), 0.21, 1e-12);
@@ -242,7 +242,7 @@ TEST(Image, AnIlluminationInPolynomialsGivesTheImageOfOneThatIsTraced) {
         }
     }
     EXPECT_GT(lost, 1000U);
-    EXPECT_FALSE(std::ranges::equal(by_polynomials.flux.values, traced.flux.values)); // that they are at work
+    EXPECT_FALSE(std::ranges::equal(by_polynomials.flux.values, traced.flux.values)); // the polynomials are really used
     auto fresh = options();
     fresh.seed = 77;
     const auto independent = expose(instrument, specimen, fresh);

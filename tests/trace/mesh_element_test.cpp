@@ -155,7 +155,7 @@ TEST(MeshElement, ARoofOfTwoMirrorsSendsLightBack) {
             placed(roof, optics::Pose{{0, 2, 30}, glm::dmat3(1)}.turned({.tilt_x = tilt}), MeshElement::Kind::mirror));
         const Detection end = trace_bench(bench, ray(), 1).front();
         EXPECT_EQ(end.fate.status, PATH_DETECTED);
-        EXPECT_NEAR(std::abs(end.y), 4, rounding); // as far beyond the ridge as it came before it
+        EXPECT_NEAR(std::abs(end.y), 4, rounding); // it leaves as far beyond the ridge as it came in before it
     }
 }
 
@@ -318,7 +318,7 @@ TEST(MeshElement, LightLeavesGlassThroughFacetsAlone) {
         inside += bench.inside;
     }
     EXPECT_GT(inside, 10000);
-    EXPECT_GT(beside, 0); // so the case is there
+    EXPECT_GT(beside, 0); // the test has rays of this case
     EXPECT_EQ(beside, numerical);
     EXPECT_LT(beside, inside / 1000);
 }

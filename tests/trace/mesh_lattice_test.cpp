@@ -93,7 +93,7 @@ TEST(MeshLattice, IsNotFoundWhereThereIsNone) {
     moved.vertices[1000].x += 3e-6F;
     EXPECT_FALSE(lattice_of(moved));
     specimen::Mesh torn = whole;
-    torn.vertices[1000].z += 1e-4F; // of one of the triangles that meet there
+    torn.vertices[1000].z += 1e-4F; // moves this point of one triangle alone
     EXPECT_FALSE(lattice_of(torn));
     specimen::Mesh turned = whole;
     for (glm::vec3& vertex : turned.vertices) {

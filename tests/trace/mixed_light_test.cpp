@@ -271,7 +271,7 @@ TEST(Spectrum, OfSeveralSourcesIsTheirMixture) {
         weight += node.weight;
     }
     EXPECT_NEAR(weight, 1, 1e-12);
-    EXPECT_NEAR(mean, both.reference_um, 1e-5); // of bins' middles
+    EXPECT_NEAR(mean, both.reference_um, 1e-5); // a mean over the middles of bins
     EXPECT_TRUE(optics::Spectrum::mixture({{1, blue}, {3, blue}}) == blue);
     EXPECT_FALSE(both == green);
 }

@@ -163,7 +163,7 @@ TEST(PixelEstimate, OfWavesIsTheirLightWithTheNoiseThatFilteringLeaves) {
                 .pixels = numbers, .waves = &waves, .waves_scale = scale, .asks_for_power = power};
             for (const MadeBy by : {MadeBy::device, MadeBy::host}) {
                 const auto found = found_by(device, {device, rule, pixels, counted, by});
-                EXPECT_EQ(found.power, power ? rays.power : std::nullopt); // as rays bring it
+                EXPECT_EQ(found.power, power ? rays.power : std::nullopt); // the power that the rays bring
                 EXPECT_EQ(found.pixels.standard_error.values, expected.standard_error.values);
                 for (std::size_t pixel = 0; pixel < pixels.count(); ++pixel) {
                     // The waves that the device makes are in float.

@@ -239,7 +239,7 @@ TEST(Waves, GiveGratingsTheContrastOfAnAberratedObjective) {
 TEST(Waves, TakeFewerPartsWhereTheDeviceCannotHoldThem) {
     const auto instrument = ideal_microscope(0.28);
     auto coarse = instrument;
-    coarse.first_order.pixel_pitch *= 6; // of an eighth of the shortest wave: three parts
+    coarse.first_order.pixel_pitch *= 6; // parts of an eighth of the shortest wave: three a pixel
     ASSERT_EQ(optics::parts_for_waves(coarse), 3);
     vulkan::DeviceReport device;
     device.name = "small";
@@ -309,7 +309,7 @@ TEST(Waves, OfManyPixelsFitWhereTheyAreTiled) {
     EXPECT_THAT(refused(camera, {.cells = 8, .parts = 1, .most_memory = std::uint64_t{1} << 31}),
                 AllOf(HasSubstr("2566914048 bytes of light"), HasSubstr("at most 2147483648 bytes in all, by "
                                                                         "diffraction.most_memory_gib")));
-    device.memory_bytes = std::uint64_t{1} << 30; // of which four fifths are for waves
+    device.memory_bytes = std::uint64_t{1} << 30; // four fifths of it may hold waves
     EXPECT_THAT(refused(camera, {.cells = 8, .parts = 1}),
                 AllOf(HasSubstr("at most 858993459 bytes in all"), HasSubstr("of the memory of small")));
     device.memory_bytes = std::uint64_t{24} << 30;
@@ -407,7 +407,7 @@ TEST(Waves, OfRectangularDetectorsWithGaps) {
             auto options = with_waves(trace::Estimator::backward);
             options.rays = 256 * 40 * 24;
             options.max_bounces = 1;
-            options.waves->parts = 5; // of which a gap takes whole ones and shares
+            options.waves->parts = 5; // the gap covers some parts whole and some in part
             const auto image =
                 trace::make_device_tracer(instrument, flat_with_grating(period, angle), options)->expose(0, 1);
             ASSERT_EQ(image.flux.columns, 40);

@@ -115,7 +115,7 @@ TEST(Devices, SeveralByAListOrAll) {
     EXPECT_THAT(choose_devices(reports, "LLVM 15, 256"), ElementsAre(0)); // a comma of the name's own
     EXPECT_THAT(choose_devices(reports, ""), ElementsAre(1));
     EXPECT_EQ(choose_device(reports, {"2,1"}), 2U);
-    EXPECT_THROW(choose_devices(reports, "0,1"), DeviceError); // of different models
+    EXPECT_THROW(choose_devices(reports, "0,1"), DeviceError); // devices of different models
     EXPECT_THROW(choose_devices(reports, "1,3"), DeviceError); // unusable
     EXPECT_THROW(choose_devices(reports, "1,"), DeviceError);
     EXPECT_THROW(choose_devices(reports, "1,,2"), DeviceError);

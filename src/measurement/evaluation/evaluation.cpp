@@ -181,7 +181,7 @@ topography::FocusPlanesMaker focus_planes_for_files(EvaluateOn evaluate_on, cons
             }
         } catch (const DeviceError& none) {
             without(none);
-        } catch (const RunError& failed) { // as with too little memory
+        } catch (const RunError& failed) { // for example, too little memory
             without(failed);
         }
         return topography::make_host_focus_planes(stack);

@@ -61,7 +61,7 @@ Configuration configuration_of(const OwnStack& stack) {
              .key = "",
              .found = *line,
              .expected = "the value that the images were traced with, in " + file.string(),
-             .remedy = "Set keys of [topography], [diffraction] and [output] alone; --stack traces other images."});
+             .remedy = "Set keys of [topography], [diffraction] and [output] alone; vkfv stack traces other images."});
     }
     return configuration;
 }

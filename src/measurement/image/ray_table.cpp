@@ -18,7 +18,7 @@ constexpr double unit_length_tolerance = 1e-6; // admits directions written with
 
 std::vector<trace::RayInput> read_ray_table(const std::filesystem::path& file) {
     std::vector<trace::RayInput> rays;
-    for (const auto& row : read_number_table(file, {"x_mm", "y_mm", "z_mm", "l", "m", "n"}, "--trace-rays", "ray")) {
+    for (const auto& row : read_number_table(file, {"x_mm", "y_mm", "z_mm", "l", "m", "n"}, "vkfv trace-rays", "ray")) {
         const auto& v = row.values;
         const double length = std::hypot(v[3], v[4], v[5]);
         if (std::abs(length - 1) > unit_length_tolerance) {

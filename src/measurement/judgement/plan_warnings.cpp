@@ -21,7 +21,7 @@ struct Plan {
     const optics::FirstOrder& first_order;
     const Relief& relief;
     std::vector<double> positions;
-    double depth = 0; // of focus
+    double depth = 0; // depth of field, mm
 
     double first() const { return positions.front(); }
     double last() const { return positions.back(); }

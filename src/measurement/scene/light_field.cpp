@@ -9,7 +9,7 @@ namespace vkfv::measurement {
 
 namespace {
 
-constexpr int noise_points = 1024; // of a side; beyond them the noise is mirrored
+constexpr int noise_points = 1024; // points along a side of the noise, which is mirrored beyond them
 const std::string of_specimen = "specimen.reflectance", of_light = "illumination.field";
 
 specimen::ReflectanceMap made_pattern(const specimen::Reflectance& pattern) {

@@ -26,7 +26,7 @@ constexpr double most_light_beside = 0.98;
 constexpr const char* likely_causes =
     "A length may be in another unit than its key says (source.radius_mm, specimen.size_mm, specimen.unit), or the "
     "specimen "
-    "off the axis; --layout draws the instrument, --check tells what the detector sees";
+    "off the axis; vkfv layout draws the instrument, vkfv check tells what the detector sees";
 
 std::string percent(double share) {
     return fmt::format("{:.3g} %", 100 * share);

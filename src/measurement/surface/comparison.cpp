@@ -50,12 +50,12 @@ std::vector<HeightMap> read_measurements(const ComparisonRequest& request, std::
     for (const auto& file : files) {
         measurements.push_back(map_of(file, request, warnings));
         if (!same_grid(measurements.front(), measurements.back())) {
-            refuse_file(file, "--compare", grid_text(measurements.back()),
+            refuse_file(file, "vkfv compare", grid_text(measurements.back()),
                         fmt::format("the grid of {}: {}", files.front().string(), grid_text(measurements.front())),
                         "Compare repeated measurements of one field; other fields in runs of their own.");
         }
         if (!any_height(measurements.back())) {
-            refuse_file(file, "--compare", "no measured point", "a height map with heights",
+            refuse_file(file, "vkfv compare", "no measured point", "a height map with heights",
                         "Measure again, or leave it out.");
         }
     }
@@ -76,7 +76,7 @@ void check_place(const ComparisonRequest& request, const HeightMap& first, const
         }
     }
     if (!any_height(surface::resampled(truth, first))) {
-        refuse_file(request.truth, "--compare", grid_text(truth),
+        refuse_file(request.truth, "vkfv compare", grid_text(truth),
                     fmt::format("heights where {} has them: {}", measured_file.string(), grid_text(first)),
                     "Give the truth of the same field, in the same frame.");
     }
@@ -99,7 +99,7 @@ ComparisonResult compare_files(const ComparisonRequest& request) {
     if (request.band.form.kind == surface::Form::Kind::sphere &&
         std::ranges::any_of(comparison.measurements,
                             [](const auto& one) { return one.deviation.measured_share == 0; })) {
-        refuse_file(request.measurements.front(), "--compare", "no point on both spheres",
+        refuse_file(request.measurements.front(), "vkfv compare", "no point on both spheres",
                     "a form that the points of both surfaces settle", "Choose --form plane or --form polynomial-2.");
     }
     auto profile = compared_profile(pair);

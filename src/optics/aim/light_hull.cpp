@@ -21,13 +21,14 @@ namespace {
 using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 
-// The coordinates that distinguish the rays of the light.
+// The coordinates of a ray of the light: where it starts in the disc, its direction, its wavelength and the disc's
+// place.
 enum HullCoordinate : std::size_t {
     place_radius,      // share of the disc's radius
     place_azimuth,     // rad
     direction_azimuth, // rad, relative to place_azimuth
     cone_share,        // share of the distance from the cone's middle to its rim
-    wavelength,        // x of physics::Light
+    wavelength,        // Light::spectral, -1 to 1 over the spectrum
     disc_distance,     // mm
     hull_coordinates,
 };
@@ -97,6 +98,7 @@ class Cone {
         ray.direction = glm::dvec3(slope, 1) / std::sqrt(1 + glm::dot(slope, slope));
         return ray;
     }
+    // At most 0 if the ray of this slope passes the train.
     double excess_at(glm::dvec2 slope) const { return excess_of(light_.train, ray_of(slope), spectral_); }
 
     // The slope at which light is expected or, if none passes there, the mean of passing slopes around it.
@@ -146,7 +148,7 @@ class Cone {
     double spectral_;
 };
 
-constexpr double nothing = -1; // below any measure
+constexpr double nothing = -1; // stands for the measure of a ray that does not pass, below all others
 
 struct HullPoint {
     HullPlace at{};
@@ -183,9 +185,10 @@ double climbed(const HullAxes& axes, HullPoint from, const std::function<double(
     return from.measure;
 }
 
-// Rounds up to the next of 256 steps an octave, after an allowance for the adversary's last steps and a device's float.
+// Rounds up to the next of 256 steps an octave, after an allowance for what the search has left out and for the
+// rounding of a device's float.
 double rounded_up(double value) {
-    constexpr double left = 1.003;
+    constexpr double left = 1.003; // the allowance, as a factor
     int exponent = 0;
     const double mantissa = std::frexp(left * value, &exponent);
     return std::ldexp(std::ceil(mantissa * 512) / 512, exponent);
@@ -209,6 +212,7 @@ double greatest_of(const DiscLight& light, ConePart part, const RayMeasure& meas
         point.measure = of(point.at);
         return point;
     });
+    // The best grid point of each wavelength is the start of a climb of its own.
     const HullAxis& spectrum = axes[wavelength];
     const std::vector<double> tops = parallel_list(spectrum.points, [&](int k) {
         HullPoint highest;

@@ -189,7 +189,7 @@ std::vector<Warning> warning_of_field_stop(const AxialLayout& layout, const Surf
     if (!(lit_radius < layout.field_half_diagonal)) {
         return {};
     }
-    constexpr double margin = 1.05; // of a rim that aberrations blur
+    constexpr double margin = 1.05; // aberrations blur the rim by a few percent
     return {{.code = "small-field-stop",
              .key = "illumination.field_stop_radius_mm",
              .value = number_text(std::sqrt(stop.semi_diameter_squared)),

@@ -11,6 +11,8 @@
 namespace vkfv::topography {
 namespace {
 
+// Ends of the tables by the texture's share of the energy and by the bend; and the offset of their second column, in
+// steps.
 constexpr double least_share = 0.02, least_bend = 1e-4, most_bend = 8, far_offset = 0.45;
 
 struct CurveValues {
@@ -18,10 +20,12 @@ struct CurveValues {
     double curve_value(int at) const { return values[static_cast<std::size_t>(at)]; }
 };
 
+// The number of values on either side of the largest one that the method takes.
 int range_of(const PeakFinder& finder) {
     return finder.method == PeakMethod::gaussian || finder.method == PeakMethod::parabola ? 1 : finder.range;
 }
 
+// The place of the maximum near the value `at`, in steps from it. None if the method finds no maximum.
 std::optional<double> place_of(const std::vector<double>& values, int at, const PeakFinder& finder) {
     focus::f64::FocusPlan plan{};
     plan.peak = static_cast<int>(finder.method);
@@ -56,7 +60,9 @@ double bend_of_index(int index, int count) {
     return least_bend * std::pow(most_bend / least_bend, static_cast<double>(index) / (count - 1));
 }
 
-// The curvature c of the Gaussian through three values, from bend = 2 - 2 exp(-c / 2) cosh(c x).
+// The curvature c, in 1 / steps^2, of the Gaussian through a curve's largest value and both its neighbours. bend: twice
+// the largest value less both neighbours, over the largest, so 2 - 2 exp(-c / 2) cosh(c offset). offset: steps from the
+// largest value to the Gaussian's maximum. Fixed-point iteration.
 double curvature_of(double bend, double offset) {
     double curvature = bend;
     const double rest = std::max(1e-3, 1 - bend / 2);
@@ -115,6 +121,7 @@ CurveNoise::CurveNoise(const TextureAndNoise& found, const std::vector<double>& 
         // The averaged curve's values at -range ... range, and their covariances over v.
         std::vector<double> averaged(static_cast<std::size_t>(points)),
             covariance(static_cast<std::size_t>(points * points));
+        // half: the covariances of an averaged value at x with the single ones, from which `covariance` is averaged.
         std::vector<double> half(static_cast<std::size_t>(points * side));
         for (int x = 0; x < points; ++x) {
             for (int tap = 0; tap < taps; ++tap) {
@@ -258,7 +265,7 @@ CurveNoise::Simulated CurveNoise::simulated_at(double linear) const {
             .bend_variance = std::lerp(before->bend_variance, after->bend_variance, rest)};
 }
 
-// Simulates a curve of the stack's own width many times, under noise that both averages have correlated.
+// Simulates a curve of the stack's own width many times, under noise that both averages along z have correlated.
 void CurveNoise::simulate(const std::vector<double>& axial_weights, const PeakFinder& finder) {
     constexpr int samples = 400, most_reach = 200, levels = 12;
     const double bend = at_share(found_.share, [](const OfShare& here) { return here.bend; });

@@ -313,7 +313,7 @@ ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const speci
     }
     if (asked == Traversal::ray_query && !device.ray_query) {
         throw DeviceError(fmt::format("{} has no VK_KHR_ray_query, which traversal = \"ray-query\" asks for; use "
-                                      "another device (--devices lists them) or traversal = \"{}\"",
+                                      "another device (vkfv devices lists them) or traversal = \"{}\"",
                                       device.name, mesh || nonsequential ? "bvh" : "quadtree"));
     }
     if (asked != Traversal::automatic) {

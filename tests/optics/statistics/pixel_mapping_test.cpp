@@ -70,7 +70,7 @@ TEST(PixelMapping, OfDisplacedIdealLensesIsTheClosedForm) {
     struct Case {
         const char* name;
         Placement InstrumentDescription::*part;
-        double share; // of the displacement that the pixels look aside
+        double share; // shift of the pixels' places over the part's displacement
     };
     for (const Case& one : {Case{"detector", &InstrumentDescription::detector_placement, -0.1},
                             Case{"tube lens", &InstrumentDescription::tube_lens_placement, 0.1},
@@ -111,7 +111,7 @@ TEST(PixelMapping, OfACentredInstrumentIsSymmetric) {
     const double pitch = centred.first_order.pixel_pitch;
     const double magnification = image_quality(description, centred).magnification;
     EXPECT_NEAR(symmetric.deviation().amplification.x, magnification / centred.first_order.magnification, 1e-4);
-    EXPECT_LT(symmetric.deviation().amplification.x, 0.999); // which is not the paraxial one
+    EXPECT_LT(symmetric.deviation().amplification.x, 0.999); // distortion separates it from the paraxial one
     description.detector_placement.change.tilt_x = 1e-5;
     const Instrument displaced = assemble(description);
     ASSERT_FALSE(imaging_of(displaced).symmetric);

@@ -266,7 +266,7 @@ TEST(Scatter, ReflectanceIsTheShareThatIsNotAbsorbed) {
 // number that chooses. An absorber of one step more, 2^-20, would take one ray of a million.
 TEST(Scatter, WeightsThatAddUpToOneAbsorbNothing) {
     const double parts[][4] = {{0.1, 0.2, 0.3, 0.4}, {0.7, 0.1, 0.1, 0.1}, {0.3, 0.3, 0.3, 0.1}, {0.6, 0.4, 0, 0}};
-    const double largest = 1.0 - 1.0 / 4194304; // of the draws
+    const double largest = 1.0 - 1.0 / 4194304; // largest number that is drawn
     for (const auto& p : parts) {
         const Material whole = {lobe(SCATTER_LAMBERTIAN, p[0]), lobe(SCATTER_LAMBERTIAN, p[1]),
                                 lobe(SCATTER_LAMBERTIAN, p[2]), lobe(SCATTER_LAMBERTIAN, p[3])};

@@ -140,7 +140,7 @@ TEST(NearTheEnds, WhatIsInTheScanIsMeasuredByTheMeasuresForNoise) {
 // A part of the field is in focus over more images than the other, as a window upon a slope is, and the stack's width
 // is that of neither part.
 TEST(NearTheEnds, PartsOfDifferentDepthsOfFocusAreMeasuredEachByItsOwnWidth) {
-    constexpr int images = 61, margin = 8; // of windows that see both parts
+    constexpr int images = 61, margin = 8; // pixels whose windows see both parts
     for (const double from_end : {3.0, 4.0, 6.0}) {
         for (const bool last : {false, true}) {
             const double place = last ? images - 1 - from_end : from_end;

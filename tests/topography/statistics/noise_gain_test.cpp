@@ -262,7 +262,7 @@ TEST(HeightNoise, OfACameraIsThatOfItsHeights) {
         EXPECT_GT(found.share, 0.95) << name;
         EXPECT_NEAR(found.told_over_found, 1, 0.15) << name;
 
-        // The wrong twin is texture of the noise's spectrum.
+        // The wrong twin assumes a texture with the same spectrum as the noise.
         LevelStack stack(texture, noise, 0);
         FocusProbes probes(side, side, measure, FocusWindow(7, WindowShape::box));
         for (int k = 0; k < LevelStack::images; ++k) {
@@ -282,7 +282,7 @@ TEST(FocusChoice, IsByTheNoiseOfTheStack) {
     const auto texture = test::blurred_by_pupil(side, aperture, nyquist).image(random);
     const BlurredNoise noise(side);
     const FocusWindow window(7, WindowShape::box);
-    for (const double deviation : {0.0, 0.02, 0.7, 3.0}) { // of the texture's 10
+    for (const double deviation : {0.0, 0.02, 0.7, 3.0}) { // deviation of the noise; that of the texture is 10
         LevelStack stack(texture, noise, 2, deviation);
         FocusProbes probes(side, side, where_noise_is_low, window), by_chosen(side, side, where_noise_counts, window);
         for (int k = 0; k < LevelStack::images; ++k) {

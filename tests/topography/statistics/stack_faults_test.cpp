@@ -206,7 +206,7 @@ TEST(StackFaults, SaturatedPixelsHideNoNoise) {
             }
         }
     }
-    EXPECT_NEAR(median_noise(images) / whole, 1, 0.15); // as of flicker
+    EXPECT_NEAR(median_noise(images) / whole, 1, 0.15); // the tolerance of flicker
 }
 
 } // namespace

@@ -114,7 +114,7 @@ TEST(VaryingNoise, PassesForTextureWhereItIsTheSameInNeighbouringImages) {
 }
 
 TEST(VaryingNoise, BesideAnObjectIsNotMeasuredAndTheObjectIs) {
-    constexpr int margin = 6; // of the windows and masks that see both
+    constexpr int margin = 6; // pixels whose windows and masks see both
     for (const Case& one : cases()) {
         if (one.images <= few_images) {
             continue; // there a few percent pass by chance, which the command says

@@ -48,7 +48,7 @@ optics::Instrument ideal_microscope() {
 TEST(WavesOfTheField, InWindowsAreThoseOfTheWholeImage) {
     auto instrument = ideal_microscope();
     instrument.first_order.field_corner *= 1e-6;
-    instrument.first_order.pixel_pitch *= 2; // of an eighth of the shortest wave: one part
+    instrument.first_order.pixel_pitch *= 2; // parts of an eighth of the shortest wave: one a pixel
     ASSERT_EQ(optics::parts_for_waves(instrument), 1);
     const ImageSize pixels{300, 220};
     const optics::PupilFilter whole(instrument, {.cells = 2, .parts = 1, .tiles = 1});
