@@ -1,6 +1,7 @@
 #include "core/messages/interruption.hpp"
 
 #include "core/messages/log.hpp"
+#include "core/messages/safe_text.hpp"
 
 #include <unistd.h>
 
@@ -19,7 +20,7 @@ namespace {
 constexpr std::size_t most_bytes = 500;
 
 struct Sentence {
-    std::array<char, 6 * most_bytes + 2> text; // a byte takes up to six in JSON
+    std::array<char, 6 * most_bytes + 2> text; // a byte takes up to six when it is escaped
     std::size_t bytes;
 };
 
@@ -90,7 +91,7 @@ void interruptions_as_json() {
 
 void say_when_interrupted(std::string_view sentence) {
     sentence = sentence.substr(0, most_bytes);
-    const std::string quoted = as_json ? json_quoted(sentence) : std::string(sentence);
+    const std::string quoted = as_json ? json_quoted(sentence) : safe_line(sentence);
     const std::size_t next = 1 - at_hand.load();
     Sentence& into = sentences[next];
     into.bytes = std::min(quoted.size(), into.text.size());

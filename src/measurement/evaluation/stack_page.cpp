@@ -1,5 +1,6 @@
 #include "measurement/evaluation/stack_page.hpp"
 
+#include "core/messages/json_text.hpp"
 #include "measurement/scene/verdict.hpp"
 #include "measurement/scene/warning_json.hpp"
 #include "report/declared_figures.hpp"
@@ -44,7 +45,7 @@ std::string text_of(const nlohmann::ordered_json& value) {
     }
     return value.is_string() ? value.get<std::string>()
            : value.is_null() ? report::reader_number(surface::undefined)
-                             : value.dump();
+                             : json_text(value, JsonLayout::one_line);
 }
 
 // Appends columns of numbers to the rows below the head. All numbers of a column have the same form.
