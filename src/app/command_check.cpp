@@ -76,8 +76,9 @@ void run_check(const CommandOptions& options) {
                                forecast ? measurement::summary(*forecast) : ""));
     }
     if (forecast && !forecast->fits()) {
-        throw RunError("This stack does not fit on the host's memory or the disk. Take fewer images or pixels, another "
-                       "machine, or another --out");
+        throw RunError(
+            "This stack does not fit into the memory of the device or the host, or on the disk. Take fewer images "
+            "or pixels, another machine, or another --out");
     }
 }
 

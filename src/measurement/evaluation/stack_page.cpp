@@ -260,9 +260,7 @@ std::string stack_page(const StackPage& content) {
         page.paragraph("Nominal values are those of the true surface at the same points, treated alike.");
     }
     const bool measured = add_parameters(page, "", plain.figures);
-    if (!measured) {
-        page.paragraph("Nothing was measured.");
-    }
+    page.paragraph(measured ? std::string(report::std_direction) + "." : "Nothing was measured.");
     if (content.diffracted) {
         add_parameters(page, "With diffraction, ", content.diffracted->figures);
     }

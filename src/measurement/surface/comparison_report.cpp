@@ -121,6 +121,7 @@ Json json_of(const topography::Comparison& comparison, const ComparisonRequest& 
         report["parameters"][row.named.key()] = {
             {"measured", row.measured.mean}, {"standard_error", row.measured.error}, {"true", row.truth}};
     }
+    report["std_direction"] = report::std_direction;
     report["compared_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     return report;
 }
