@@ -26,7 +26,7 @@ struct TableHeader {
     std::optional<double> not_measured;                  // value that marks a gap
     std::array<std::optional<double>, 3> column_units{}; // for the first three columns, from the line of their names
     std::array<bool, 3> unknown_units{}; // true for names with a unit in square brackets that is no length: "x [px]"
-    std::optional<std::string> column_names{};           // the line of the columns' names
+    std::optional<std::string> column_names{}; // the line of the columns' names
 };
 
 // The cells of a line, without separators and quotes. separator: a blank stands for any number of blanks and tabs; a
