@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 #include "bench/bench.hpp"
 #include "core/files/result_folder.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 
 #include <fmt/format.h>
 
@@ -73,7 +75,7 @@ void run_bench(const CommandOptions& options) {
     }
     const auto write_files = [&](const bench::Json& so_far) {
         if (results) {
-            results->write("bench.json", so_far.dump(2) + "\n");
+            results->write("bench.json", json_text(so_far) + "\n");
             results->write("bench.svg", bench::bench_picture(so_far));
             results->write_checksums();
         }
@@ -87,7 +89,7 @@ void run_bench(const CommandOptions& options) {
                                                      .commit = own.commit},
                                                     write_files);
     write_files(report);
-    fmt::print("{}", options.json ? report.dump(2) + "\n" : bench::bench_text(report));
+    print_text(options.json ? json_text(report) + "\n" : bench::bench_text(report));
 }
 
 } // namespace vkfv::app

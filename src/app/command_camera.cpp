@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 #include "core/files/result_folder.hpp"
 #include "core/messages/error.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/image/camera_report.hpp"
 #include "scan/store.hpp"
 
@@ -120,7 +122,7 @@ void run_camera(const CommandOptions& options) {
     }
     const auto measurement = measurement::measure_camera(
         camera, {.columns = own.pixels, .rows = own.pixels, .averaged = own.averaged}, take);
-    results.write("camera.json", measurement::camera_json(measurement).dump(2) + "\n");
+    results.write("camera.json", json_text(measurement::camera_json(measurement)) + "\n");
     results.write("transfer.csv", measurement::transfer_table(measurement));
     results.write("photon_transfer.svg", measurement::transfer_chart(measurement));
     results.write("signal_to_noise.svg", measurement::signal_to_noise_chart(measurement));
@@ -133,7 +135,7 @@ void run_camera(const CommandOptions& options) {
     for (const auto& warnings : {measurement::warnings_of(camera), measurement::warnings_of(measurement)}) {
         log_warnings(warnings);
     }
-    fmt::print("{}", measurement::summary(measurement));
+    print_text(measurement::summary(measurement));
 }
 
 } // namespace vkfv::app

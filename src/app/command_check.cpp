@@ -1,5 +1,7 @@
 #include "app/commands.hpp"
 #include "core/messages/error.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/instrument/instrument_report.hpp"
 #include "measurement/judgement/verdict.hpp"
 #include "measurement/scene/warning_json.hpp"
@@ -66,16 +68,17 @@ void run_check(const CommandOptions& options) {
         if (forecast) {
             report.json["forecast"] = measurement::json_of(*forecast);
         }
-        fmt::print("{}\n", report.json.dump(2));
+        print_text(json_text(report.json) + "\n");
     } else {
-        fmt::print("{}{}{}{}", measurement::verdict_text(options.file.string(), report.verdict),
-                   measurement::warnings_text(report.warnings),
-                   options.of<CheckOptions>().all ? report.all_figures : report.figures_that_matter,
-                   forecast ? measurement::summary(*forecast) : "");
+        print_text(fmt::format("{}{}{}{}", measurement::verdict_text(safe_line(options.file.string()), report.verdict),
+                               measurement::warnings_text(report.warnings),
+                               options.of<CheckOptions>().all ? report.all_figures : report.figures_that_matter,
+                               forecast ? measurement::summary(*forecast) : ""));
     }
     if (forecast && !forecast->fits()) {
-        throw RunError("This stack does not fit on the host's memory or the disk. Take fewer images or pixels, another "
-                       "machine, or another --out");
+        throw RunError(
+            "This stack does not fit into the memory of the device or the host, or on the disk. Take fewer images "
+            "or pixels, another machine, or another --out");
     }
 }
 

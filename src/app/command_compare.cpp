@@ -1,4 +1,6 @@
 #include "app/commands.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/surface/comparison_report.hpp"
 
 #include <fmt/format.h>
@@ -44,8 +46,8 @@ void run_compare(const CommandOptions& options) {
     if (options.out) {
         measurement::write_comparison(*options.out, request, result);
     }
-    fmt::print("{}", options.json ? measurement::comparison_json(request, result).dump(2) + "\n"
-                                  : measurement::comparison_text(request, result));
+    print_text(options.json ? json_text(measurement::comparison_json(request, result)) + "\n"
+                            : measurement::comparison_text(request, result));
 }
 
 } // namespace vkfv::app

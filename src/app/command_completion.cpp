@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 #include "command_line/completion.hpp"
+#include "core/messages/safe_text.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@ struct CompletionOptions {
 };
 
 void run_completion(const CommandOptions& options) {
-    fmt::print("{}", completion_script(options.of<CompletionOptions>().shell));
+    print_text(completion_script(options.of<CompletionOptions>().shell));
 }
 
 } // namespace

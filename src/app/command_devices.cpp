@@ -1,5 +1,7 @@
 #include "app/commands.hpp"
 
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "vulkan/device.hpp"
 
 #include <fmt/format.h>
@@ -58,13 +60,13 @@ void run_devices(const CommandOptions& options) {
         for (const auto& device : devices) {
             list.push_back(json_of(device));
         }
-        fmt::print("{}\n", list.dump(2));
+        print_text(json_text(list) + "\n");
         return;
     }
     for (const auto& device : devices) {
-        fmt::print("{}", text_of(device));
+        print_text(text_of(device));
     }
-    fmt::print("* would be used; --device takes an index or a part of a name, or \"host\" for the reference "
+    print_text("* would be used; --device takes an index or a part of a name, or \"host\" for the reference "
                "in double "
                "on the processor\n");
 }

@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 #include "command_line/reference.hpp"
+#include "core/messages/safe_text.hpp"
 
 #include <fmt/format.h>
 
@@ -16,14 +17,14 @@ struct HelpOptions {
 void run_help(const CommandOptions& options) {
     const auto own = options.of<HelpOptions>();
     if (options.markdown) {
-        fmt::print("{}", reference_markdown());
+        print_text(reference_markdown());
         return;
     }
-    fmt::print("{}", help_text(own.command.empty() ? nullptr : &command_named(own.command)));
+    print_text(help_text(own.command.empty() ? nullptr : &command_named(own.command)));
 }
 
 void run_man(const CommandOptions&) {
-    fmt::print("{}", reference_manual());
+    print_text(reference_manual());
 }
 
 } // namespace

@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/image/image.hpp"
 
 #include <fmt/format.h>
@@ -49,7 +51,7 @@ void run_image(const CommandOptions& options) {
     const double focal_height = options.of<ImageOptions>().focal_height;
     const auto file = image_path(options, configuration, focal_height);
     const auto image = measurement::measure_image(configuration, focal_height, file);
-    fmt::print("{}", options.json ? measurement::image_json(image).dump(2) + "\n" : measurement::summary(image));
+    print_text(options.json ? json_text(measurement::image_json(image)) + "\n" : measurement::summary(image));
 }
 
 } // namespace vkfv::app

@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 
 #include "core/files/file.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "optics/prescriptions/prescription_writer.hpp"
 #include "optics/prescriptions/reversal.hpp"
 #include "optics/prescriptions/zmx.hpp"
@@ -124,9 +126,9 @@ void run_import(const CommandOptions& options) {
         report["primary_wavelength_um"] = lens.primary_wavelength_um;
         report["efl_mm"] = focal.effective; // null: afocal
         report["bfl_mm"] = focal.back;
-        fmt::print("{}\n", report.dump(2));
+        print_text(json_text(report) + "\n");
     } else if (!options.out) {
-        fmt::print("{}", text);
+        print_text(text);
     }
 }
 

@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 #include "configuration/key_documents.hpp"
+#include "core/messages/safe_text.hpp"
 
 #include <fmt/format.h>
 
@@ -19,18 +20,18 @@ struct ExplainOptions {
 
 void run_keys(const CommandOptions& options) {
     const auto own = options.of<KeysOptions>();
-    fmt::print("{}", options.json       ? keys_json()
-                     : options.markdown ? keys_markdown()
-                     : own.schema       ? configuration_schema()
-                                        : keys_text());
+    print_text(options.json       ? keys_json()
+               : options.markdown ? keys_markdown()
+               : own.schema       ? configuration_schema()
+                                  : keys_text());
 }
 
 void run_explain(const CommandOptions& options) {
-    fmt::print("{}", explained(options.of<ExplainOptions>().key));
+    print_text(explained(options.of<ExplainOptions>().key));
 }
 
 void run_template(const CommandOptions&) {
-    fmt::print("{}", configuration_template());
+    print_text(configuration_template());
 }
 
 } // namespace

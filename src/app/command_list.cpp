@@ -2,6 +2,8 @@
 
 #include "camera/sensors.hpp"
 #include "core/files/assets.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "core/toml/toml_reader.hpp"
 #include "optics/media/light_emitting_diodes.hpp"
 #include "optics/prescriptions/prescription.hpp"
@@ -127,7 +129,7 @@ void run_list(const CommandOptions& options) {
         for (const auto& [name, description] : list) {
             report.push_back({{"name", name}, {"description", description}});
         }
-        fmt::print("{}\n", report.dump(2));
+        print_text(json_text(report) + "\n");
         return;
     }
     std::size_t widest = 0;
@@ -135,7 +137,7 @@ void run_list(const CommandOptions& options) {
         widest = std::max(widest, name.size());
     }
     for (const auto& [name, description] : list) {
-        fmt::print("{:<{}}  {}\n", name, widest, description);
+        print_text(fmt::format("{:<{}}  {}\n", name, widest, description));
     }
 }
 

@@ -1,4 +1,5 @@
 #include "app/commands.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/stack/stack.hpp"
 
 #include <fmt/format.h>
@@ -30,8 +31,7 @@ Command merge_command() {
 
 void run_merge(const CommandOptions& options) {
     const auto folders = options.of<MergeOptions>().folders;
-    fmt::print("{}",
-               measurement::summary(measurement::merge_stack(folders.front(), {folders.begin() + 1, folders.end()})));
+    print_text(measurement::summary(measurement::merge_stack(folders.front(), {folders.begin() + 1, folders.end()})));
 }
 
 } // namespace vkfv::app

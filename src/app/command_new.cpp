@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 #include "core/files/file.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/beginning/first_configuration.hpp"
 
 #include <fmt/format.h>
@@ -89,7 +90,7 @@ void run_new(const CommandOptions& options) {
     const std::string name = options.out ? options.out->filename().string() : "my.toml";
     const std::string text = measurement::first_configuration(sheets, name);
     if (!options.out) {
-        fmt::print("{}", text);
+        print_text(text);
         return;
     }
     if (std::filesystem::exists(*options.out)) {

@@ -1,4 +1,6 @@
 #include "app/commands.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/instrument/wave_figures.hpp"
 #include "measurement/instrument/wave_report.hpp"
 #include "measurement/scene/assembly.hpp"
@@ -64,9 +66,9 @@ void run_optics(const CommandOptions& options) {
         json["images"] = measurement::json_of(limits);
         text += measurement::summary(limits);
     }
-    results.write("optics.json", json.dump(2) + "\n");
+    results.write("optics.json", json_text(json) + "\n");
     results.write_checksums();
-    fmt::print("{}", text);
+    print_text(text);
 }
 
 } // namespace vkfv::app

@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 #include "core/files/file.hpp"
+#include "core/messages/json_text.hpp"
 #include "core/messages/progress.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/evaluation/evaluation_files.hpp"
 #include "measurement/stack/stack.hpp"
 
@@ -58,12 +60,12 @@ void run_stack(const CommandOptions& options) {
     const auto shard = options.of<StackOptions>().shard;
     if (shard) {
         const auto traced = measurement::trace_shard(configuration, *shard, progress);
-        fmt::print("{}", options.json ? measurement::shard_json(traced).dump(2) + "\n" : measurement::summary(traced));
+        print_text(options.json ? json_text(measurement::shard_json(traced)) + "\n" : measurement::summary(traced));
         tell_results(traced.folder);
         return;
     }
     const auto stack = measurement::measure_stack(configuration, progress);
-    fmt::print("{}", options.json ? read_file(stack.folder / measurement::results_name) : measurement::summary(stack));
+    print_text(options.json ? read_file(stack.folder / measurement::results_name) : measurement::summary(stack));
     tell_results(stack.folder);
 }
 

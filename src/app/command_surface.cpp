@@ -1,4 +1,6 @@
 #include "app/commands.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/surface/surface_measurement.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -162,8 +164,8 @@ void run_surface(const CommandOptions& options) {
                                       .sought = own.sought,
                                       .asked = own.asked,
                                       .out = options.out});
-    fmt::print("{}", options.json ? measurement::surface_json(figures, options.file).dump(2) + "\n"
-                                  : measurement::surface_text(figures));
+    print_text(options.json ? json_text(measurement::surface_json(figures, options.file)) + "\n"
+                            : measurement::surface_text(figures));
 }
 
 } // namespace vkfv::app

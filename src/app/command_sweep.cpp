@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 #include "core/messages/progress.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/sweep/sweep.hpp"
 
 #include <fmt/format.h>
@@ -23,13 +24,14 @@ void run_sweep(const CommandOptions& options) {
     const auto result =
         measurement::run_sweep(options.file, options.overrides, progress, [&](const measurement::StackResult& stack) {
             if (!options.json) {
-                fmt::print("{}", measurement::summary(stack));
+                print_text(measurement::summary(stack));
             }
         });
     if (options.json) {
-        fmt::print("{}", measurement::sweep_json(result.sweep, result.rows));
+        print_text(measurement::sweep_json(result.sweep, result.rows));
     } else {
-        fmt::print("{}results in {}\n", measurement::sweep_markdown(result.sweep, result.rows), result.folder.string());
+        print_text(fmt::format("{}results in {}\n", measurement::sweep_markdown(result.sweep, result.rows),
+                               safe_line(result.folder.string())));
     }
     tell_results(result.folder);
 }

@@ -1,4 +1,5 @@
 #include "app/commands.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/evaluation/existing_stack.hpp"
 
 #include "core/mathematics/units.hpp"
@@ -174,7 +175,7 @@ void run_topography(const CommandOptions& options) {
     auto stack = made_here ? evaluate_own(options) : evaluate_foreign(options);
     if (shuffle && !options.out) {
         // A shuffled stack is a control, so its heights are not written beside the stack.
-        fmt::print("{}images shuffled, nothing written\n", measurement::summary(stack.evaluation));
+        print_text(fmt::format("{}images shuffled, nothing written\n", measurement::summary(stack.evaluation)));
         return;
     }
     const auto destination = options.out.value_or(options.file);
@@ -183,7 +184,8 @@ void run_topography(const CommandOptions& options) {
     }
     ResultFolder results(destination);
     measurement::write_results(results, stack);
-    fmt::print("{}results in {}\n", measurement::summary(stack.evaluation), destination.string());
+    print_text(
+        fmt::format("{}results in {}\n", measurement::summary(stack.evaluation), safe_line(destination.string())));
 }
 
 } // namespace vkfv::app

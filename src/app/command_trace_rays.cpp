@@ -1,4 +1,5 @@
 #include "app/commands.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/image/ray_table.hpp"
 #include "measurement/scene/assembly.hpp"
 
@@ -69,7 +70,7 @@ void run_trace_rays(const CommandOptions& options) {
     const auto traced = own.float_precision
                             ? trace::trace_rays_on_device(instrument, rays, own.apertures, configuration.trace.device)
                             : trace::trace_rays_on_host(instrument, rays, own.apertures);
-    fmt::print("{}", measurement::ray_table_text(traced, own.from_best_focus ? best_focus : paraxial));
+    print_text(measurement::ray_table_text(traced, own.from_best_focus ? best_focus : paraxial));
 }
 
 } // namespace vkfv::app

@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 
 #include "core/files/result_folder.hpp"
+#include "core/messages/safe_text.hpp"
 #include "scan/repair.hpp"
 #include "scan/stack_identity.hpp"
 #include "scan/store.hpp"
@@ -93,8 +94,8 @@ void run_verify(const CommandOptions& options) {
     bool repairable = false;
     for (const auto& folder : folders) {
         if (options.of<VerifyOptions>().repair && has(folder, scan::configuration_copy_name) && scan::repair(folder)) {
-            fmt::print("{}: written again; what was there is {}\n", (folder / scan::configuration_name).string(),
-                       scan::before_repair_name);
+            print_text(fmt::format("{}: written again; what was there is {}\n",
+                                   safe_line((folder / scan::configuration_name).string()), scan::before_repair_name));
         }
         auto check = check_by_checksums(folder);
         if (has(folder, scan::configuration_name)) {
@@ -103,16 +104,18 @@ void run_verify(const CommandOptions& options) {
         repairable = repairable || (has(folder, scan::configuration_copy_name) && lacks_configuration(check));
         files += check.files.size();
         for (const auto& [file, what] : check.damages) {
-            sentences.push_back(fmt::format("{}: {}", (folder / file).string(), what));
+            sentences.push_back(fmt::format("{}: {}", safe_line((folder / file).string()), what));
         }
         if (!has(folder, checksums_name)) {
-            fmt::print("{}: not finished: its images are checked, and there are no results yet\n", folder.string());
+            print_text(fmt::format("{}: not finished: its images are checked, and there are no results yet\n",
+                                   safe_line(folder.string())));
         }
     }
     for (const std::string& sentence : sentences) {
-        fmt::print("{}\n", sentence);
+        print_text(sentence + "\n");
     }
-    fmt::print("{} files checked in {}, {} damaged\n", files, options.file.string(), sentences.size());
+    print_text(
+        fmt::format("{} files checked in {}, {} damaged\n", files, safe_line(options.file.string()), sentences.size()));
     if (!sentences.empty()) {
         throw RunError(fmt::format("{}: {} of its files are not those that were written, the first: {}. {}",
                                    options.file.string(), sentences.size(), sentences.front(),

@@ -110,5 +110,8 @@ int main(int argument_count, char** argument_values) {
                                   "configuration.",
                                   error.what()),
                       run_failed);
+    } catch (...) { // what a library throws that is no std::exception
+        return report("unexpected failure without words. Please report it with the command line and the configuration.",
+                      run_failed);
     }
 }

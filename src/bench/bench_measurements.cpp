@@ -1,4 +1,5 @@
 #include "bench/bench_parts.hpp"
+#include "core/messages/json_text.hpp"
 #include "trace/interface/traced_instrument.hpp"
 
 #include <fmt/format.h>
@@ -71,7 +72,7 @@ Json measure_bench(const BenchOptions& options, const std::function<void(const J
         const auto agrees = [](const Json& check) { return check["agrees"].get<bool>(); };
         if (!std::ranges::all_of(report["validation"], agrees)) {
             throw RunError(fmt::format("images of one scene do not agree, and nothing was timed:\n{}",
-                                       report["validation"].dump(2)));
+                                       json_text(report["validation"])));
         }
     }
     if (wants("stages")) {

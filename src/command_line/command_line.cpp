@@ -4,6 +4,7 @@
 #include "command_line/reference.hpp"
 #include "core/messages/heartbeat.hpp"
 #include "core/messages/log.hpp"
+#include "core/messages/safe_text.hpp"
 #include "core/messages/stages.hpp"
 
 #include <CLI/CLI.hpp>
@@ -366,10 +367,10 @@ bool run_command_line(int argument_count, char** argument_values) {
     try {
         line.parse(argument_count - (is_name ? 1 : 0), argument_values + (is_name ? 1 : 0));
     } catch (const CLI::CallForHelp&) {
-        fmt::print("{}", help_text(named));
+        print_text(help_text(named));
         return true;
     } catch (const CLI::CallForVersion& version) {
-        fmt::print("{}\n", version.what());
+        print_text(version.what() + std::string("\n"));
         return true;
     }
     line.run();

@@ -1,6 +1,7 @@
 #include "configuration/key_documents.hpp"
 
 #include "configuration/tables.hpp"
+#include "core/messages/json_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -232,7 +233,7 @@ std::string keys_json() {
             list.push_back(std::move(entry));
         }
     }
-    return list.dump(2) + "\n";
+    return json_text(list) + "\n";
 }
 
 std::string keys_markdown() {
@@ -384,7 +385,7 @@ std::string configuration_schema() {
         }
     }
     schema["required"] = required;
-    return schema.dump(2) + "\n";
+    return json_text(schema) + "\n";
 }
 
 } // namespace vkfv

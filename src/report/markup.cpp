@@ -1,10 +1,13 @@
 #include "report/markup.hpp"
 
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
+
 namespace vkfv::report {
 
 std::string escaped(std::string_view text) {
     std::string result;
-    for (const char c : text) {
+    for (const char c : safe_text(text)) { // XML allows no control characters but tabs and ends of lines
         switch (c) {
         case '&':
             result += "&amp;";
@@ -19,16 +22,15 @@ std::string escaped(std::string_view text) {
             result += "&quot;";
             break;
         default:
-            // XML allows no other control characters.
-            result += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
+            result += c;
         }
     }
     return result;
 }
 
-std::string json_text(const nlohmann::ordered_json& json) {
+std::string page_json(const nlohmann::ordered_json& json) {
     std::string text;
-    for (const char c : json.dump()) {
+    for (const char c : json_text(json, JsonLayout::one_line)) {
         switch (c) {
         case '<':
             text += "\\u003c";

@@ -13,6 +13,6 @@ namespace vkfv::report {
 std::string escaped(std::string_view text);
 
 // JSON for the content of a script element, in which no markup can begin. Numbers that are not finite become null.
-std::string json_text(const nlohmann::ordered_json& json);
+std::string page_json(const nlohmann::ordered_json& json);
 
 } // namespace vkfv::report

@@ -24,7 +24,7 @@ class Page {
     void folded(std::string_view title, std::string_view lines);
     // Adds a file of src/report/page unchanged.
     void part(std::string_view file);
-    // Adds data for the scripts, found by its id: only characters that need no escape, as in JSON (report::json_text())
+    // Adds data for the scripts, found by its id: only characters that need no escape, as in JSON (report::page_json())
     // and base64.
     void data(std::string_view id, std::string_view text);
     // Adds a script, a file of src/report/page or of a library. Scripts run in this order, after all data.

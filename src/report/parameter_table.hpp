@@ -28,6 +28,11 @@ std::vector<ParameterRow> parameter_rows(const surface::ProfileParameters& param
 // A row's value under its key; NaN becomes null.
 nlohmann::ordered_json json_of(const std::vector<ParameterRow>& rows);
 
+// Says what Std is the direction of, and from where it counts.
+inline constexpr const char* std_direction =
+    "Std is the direction of the lay, not of the wave across it: from the x axis "
+    "(0) towards the y axis (positive)";
+
 // Says by how much sampling lowers Sdq and Sdr, where that is 1 % or more of Sdq; empty otherwise.
 std::string slope_loss_text(const std::vector<ParameterRow>& rows);
 

@@ -4,6 +4,7 @@
 #include "core/files/file.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
+#include "core/messages/safe_text.hpp"
 #include "images/image_file.hpp"
 #include "scan/repair.hpp"
 #include "scan/stack_identity.hpp"
@@ -30,21 +31,10 @@ constexpr std::string_view timings_header = "what,seconds,rays_per_s";
 constexpr std::string_view images_name = "images";
 constexpr std::string_view lock_name = ".lock"; // .lock_... of shards too: core/files/result_folder.hpp
 
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) {
-        return text;
-    }
-    std::string quoted = "\"";
-    for (const char character : text) {
-        quoted += character == '"' ? "\"\"" : std::string(1, character);
-    }
-    return quoted + "\"";
-}
-
 std::string ledger_header(const trace::Ledger& ledger) {
     std::string header = "image,z_um,rays,detected_rays,emitted_W";
     for (const auto& entry : ledger.entries) {
-        header += "," + csv_field(entry.name + "_W");
+        header += "," + csv_cell(entry.name + "_W");
     }
     return header + ",residual_W";
 }
@@ -449,7 +439,7 @@ void append_timing_to(const fs::path& path, const std::string& what, double seco
     if (!fs::exists(path, none)) {
         append_line(path, timings_header);
     }
-    append_line(path, fmt::format("{},{:.6g},{}", what, seconds,
+    append_line(path, fmt::format("{},{:.6g},{}", csv_cell(what), seconds,
                                   rays > 0 && seconds > 0 ? fmt::format("{:.6g}", rays / seconds) : ""));
 }
 

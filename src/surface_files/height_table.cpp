@@ -122,17 +122,20 @@ HeightMap matrix_of(const TableText& table) {
     return map;
 }
 
-// True for a profile: a position and a height in each line, or heights alone. The first column of a height map rarely
-// ascends evenly, as positions do.
+// True for a profile: a position and a height in each line, or heights alone; also in two or three long lines, or one.
+// The first column of a height map, or its first line, rarely ascends evenly, as positions do.
 bool is_profile(const TableText& table) {
-    constexpr std::size_t least_rows = 4, most_columns = 3;
-    if (table.columns > most_columns || table.rows < least_rows)
+    constexpr std::size_t least_points = 4, most_values = 3;
+    const bool lies = table.rows <= most_values && table.columns > table.rows; // a point a column, not a line
+    const std::size_t points = lies ? table.columns : table.rows, values = lies ? table.rows : table.columns;
+    if (values > most_values || points < least_points)
         return false;
-    if (table.columns == 1)
+    if (values == 1)
         return true;
+    const auto position = [&](std::size_t point) { return table.values[lies ? point : point * table.columns]; };
     double shortest = std::numeric_limits<double>::infinity(), longest = -shortest;
-    for (std::size_t row = 1; row < table.rows; ++row) {
-        const double step = table.values[row * table.columns] - table.values[(row - 1) * table.columns];
+    for (std::size_t point = 1; point < points; ++point) {
+        const double step = position(point) - position(point - 1);
         if (!std::isfinite(step))
             return false;
         shortest = std::min(shortest, step);
@@ -141,7 +144,7 @@ bool is_profile(const TableText& table) {
     constexpr double regular = 1.5; // ratio of steps between rounded positions
     const bool ascending = shortest > 0, descending = longest < 0;
     const double ratio = ascending ? longest / shortest : shortest / longest;
-    return (ascending || descending) && (table.columns == 2 || ratio < regular);
+    return (ascending || descending) && (values == 2 || ratio < regular);
 }
 
 void set_pitch(const std::filesystem::path& path, const TableHeader& header, const ImageScale& scale,
@@ -165,18 +168,18 @@ void set_pitch(const std::filesystem::path& path, const TableHeader& header, con
 
 // Converts an ESRI grid, which has one unit along all axes.
 void take_cells(double unit, TableHeader& header) {
-    if (!header.cells)
+    if (!header.cell_x || !header.cell_y)
         return;
-    const double cell = *header.cells * unit;
-    const auto position = [&](const std::optional<double>& centre, const std::optional<double>& corner) {
+    const double cell_x = *header.cell_x * unit, cell_y = *header.cell_y * unit;
+    const auto position = [&](const std::optional<double>& centre, const std::optional<double>& corner, double cell) {
         return centre   ? std::optional(*centre * unit)
                : corner ? std::optional(*corner * unit + 0.5 * cell)
                         : std::nullopt;
     };
-    header.pitch_x = header.pitch_x.value_or(cell);
-    header.pitch_y = header.pitch_y.value_or(cell);
-    header.x0 = position(header.x_centre, header.x_corner);
-    header.y0 = position(header.y_centre, header.y_corner);
+    header.pitch_x = header.pitch_x.value_or(cell_x);
+    header.pitch_y = header.pitch_y.value_or(cell_y);
+    header.x0 = position(header.x_centre, header.x_corner, cell_x);
+    header.y0 = position(header.y_centre, header.y_corner, cell_y);
 }
 
 } // namespace
@@ -218,6 +221,9 @@ SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::pa
         check_scale(path, {.pitch = points ? std::optional(1.0) : scale.pitch, .unit = scale.unit});
     if (!(unit > 0 && std::isfinite(unit)))
         check_scale(path, {.pitch = 1, .unit = scale.unit});
+    if (points && (header.unknown_units[0] || header.unknown_units[1]) && !scale.pitch)
+        file.fail({}, "x, y", header.column_names.value_or(""), "positions in a unit of length, or --pitch_um",
+                  "Give the distance of the points by --pitch_um.");
     SurfaceFile result;
     if (header.unit)
         warn_of_contradiction(path, "unit", scale.unit, unit, header.column_names.value_or(""), result);

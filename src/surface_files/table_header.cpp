@@ -31,16 +31,41 @@ std::string plain_key(std::string_view text) {
     return key;
 }
 
-// The unit in a column name such as "x [mm]", "z (um)", "z <um>" or "Z/nm"; none without a unit of length.
+// The unit in a column name such as "x [mm]", "z (um)", "z <um>", "Z/nm", "z_um" or "height in um"; none without a unit
+// of length. Behind a blank or an underscore, where other words stand too, only units of two letters and more count.
 std::optional<double> unit_in_name(std::string_view name) {
-    for (const std::string_view brackets : {"[]", "()", "<>"}) {
+    for (const std::string_view brackets : {"[]", "()", "<>", "{}"}) {
         const auto open = name.rfind(brackets[0]);
         const auto close = name.rfind(brackets[1]);
         if (open != std::string_view::npos && close != std::string_view::npos && open < close)
             return mm_per_unit(bare(name.substr(open + 1, close - open - 1)));
     }
-    const auto slash = name.rfind('/');
-    return slash == std::string_view::npos ? std::nullopt : mm_per_unit(bare(name.substr(slash + 1)));
+    if (const auto slash = name.rfind('/'); slash != std::string_view::npos)
+        return mm_per_unit(bare(name.substr(slash + 1)));
+    const auto before = name.find_last_of(" _,");
+    const std::string_view last = before == std::string_view::npos ? std::string_view() : bare(name.substr(before + 1));
+    return last.size() > 1 && last != "in" ? mm_per_unit(last) : std::nullopt;
+}
+
+// A number with a point, or with a decimal comma.
+std::optional<double> number_with_comma(std::string_view text) {
+    std::string digits(text);
+    if (std::ranges::count(digits, ',') == 1 && digits.find('.') == std::string::npos)
+        std::ranges::replace(digits, ',', '.');
+    return number_in<double>(digits);
+}
+
+// True if each comma of the line stands between digits, behind a blank: a decimal comma and no separator.
+bool has_decimal_commas(std::string_view line) {
+    const auto digit = [&](std::size_t at) { return at < line.size() && line[at] >= '0' && line[at] <= '9'; };
+    const auto first = line.find(',');
+    const auto blank = line.find_first_of(" \t");
+    if (first == std::string_view::npos || blank == std::string_view::npos || blank > first)
+        return false;
+    for (auto at = first; at != std::string_view::npos; at = line.find(',', at + 1))
+        if (at == 0 || !digit(at - 1) || !digit(at + 1))
+            return false;
+    return true;
 }
 
 // A key with its values, such as "XY Calibration","2000","nm", "cellsize 2.0" or "# Width: 10 um".
@@ -48,7 +73,7 @@ struct Statement {
     std::string key;
     std::vector<std::string_view> values;
 
-    std::optional<double> number() const { return values.empty() ? std::nullopt : number_in<double>(values[0]); }
+    std::optional<double> number() const { return values.empty() ? std::nullopt : number_with_comma(values[0]); }
     std::optional<double> unit() const { return values.empty() ? std::nullopt : mm_per_unit(bare(values[0])); }
     std::optional<double> length() const {
         if (values.empty())
@@ -60,7 +85,7 @@ struct Statement {
         const auto blank = values[0].find(' ');
         if (blank == std::string_view::npos)
             return std::nullopt;
-        const auto value = number_in<double>(values[0].substr(0, blank));
+        const auto value = number_with_comma(values[0].substr(0, blank));
         const auto unit = mm_per_unit(bare(values[0].substr(blank)));
         return value && unit ? std::optional(*value * *unit) : std::nullopt;
     }
@@ -69,6 +94,8 @@ struct Statement {
 Statement statement_of(std::string_view line) {
     line = bare(line.substr(std::min(line.find_first_not_of("# \t"), line.size())));
     for (const char separator : {'\t', ';', ',', '=', ':'}) {
+        if (separator == ',' && has_decimal_commas(line))
+            continue;
         auto cells = cells_of(line, separator);
         if (cells.size() > 1)
             return {plain_key(cells[0]), {cells.begin() + 1, cells.end()}};
@@ -85,21 +112,30 @@ void take(const Statement& statement, TableHeader& header) {
             member = value;
     };
     const std::string& key = statement.key;
-    if (is_one_of(key,
-                  {"nodata", "nodata value", "no data", "no data value", "missing", "missing value", "missing data",
-                   "bad value", "bad data", "invalid value", "invalid data", "fill value", "void value", "blank value",
-                   "blanking value", "undefined value", "not measured", "null value"}))
+    if (is_one_of(key, {"nodata",          "nodata value", "no data",      "no data value",  "missing",
+                        "missing value",   "missing data", "bad value",    "bad data",       "bad",
+                        "invalid value",   "invalid data", "invalid",      "fill value",     "fillvalue",
+                        "void value",      "void",         "blank value",  "blanking value", "blank",
+                        "undefined value", "undefined",    "not measured", "null value",     "null",
+                        "nan value",       "nodatavalue",  "missingvalue"}))
         first(header.not_measured, statement.number());
     else if (is_one_of(key,
                        {"xy calibration", "xy pitch", "pixel size", "pixel pitch", "pitch", "lateral resolution"})) {
         first(header.pitch_x, statement.length());
         first(header.pitch_y, statement.length());
-    } else if (is_one_of(key, {"x pitch", "pitch x", "dx", "x step", "x spacing", "x calibration"}))
+    } else if (is_one_of(key, {"x pitch", "pitch x", "dx", "x step", "x spacing", "x calibration"})) {
         first(header.pitch_x, statement.length());
-    else if (is_one_of(key, {"y pitch", "pitch y", "dy", "y step", "y spacing", "y calibration"}))
+        if (header.is_grid && key == "dx")
+            first(header.cell_x, statement.number());
+    } else if (is_one_of(key, {"y pitch", "pitch y", "dy", "y step", "y spacing", "y calibration"})) {
         first(header.pitch_y, statement.length());
-    else if (is_one_of(key, {"cellsize", "cell size"}))
-        first(header.cells, statement.number());
+        if (header.is_grid && key == "dy")
+            first(header.cell_y, statement.number());
+    } else if (is_one_of(key, {"cellsize", "cell size"})) {
+        first(header.cell_x, statement.number());
+        first(header.cell_y, statement.number());
+    } else if (key == "ncols" || key == "nrows")
+        header.is_grid = true;
     else if (is_one_of(key, {"width", "breite"}))
         first(header.width, statement.length());
     else if (is_one_of(key, {"height", "h\xC3\xB6he"}))
@@ -197,11 +233,15 @@ TableHeader table_header(std::span<const std::string_view> lines, std::size_t co
         const bool alone =
             std::ranges::all_of(cells, [](std::string_view cell) { return mm_per_unit(cell).has_value(); });
         std::array<std::optional<double>, 3> units;
-        for (std::size_t k = 0; k < std::min(count, units.size()); ++k)
+        std::array<bool, 3> unknown{};
+        for (std::size_t k = 0; k < std::min(count, units.size()); ++k) {
             units[k] = alone ? mm_per_unit(cells[k]) : unit_in_name(cells[k]);
+            unknown[k] = !units[k] && cells[k].ends_with(']');
+        }
         if (std::ranges::none_of(units, [](const auto& unit) { return unit.has_value(); }))
             return false;
         header.column_units = units;
+        header.unknown_units = unknown;
         header.column_names = std::string(names);
         return true;
     };

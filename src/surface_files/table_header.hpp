@@ -14,7 +14,8 @@ namespace vkfv::surface {
 struct TableHeader {
     std::optional<double> unit;             // unit of heights, mm
     std::optional<double> pitch_x, pitch_y; // between points
-    std::optional<double> cells;            // pitch in the unit of the heights (ESRI grids)
+    bool is_grid = false;                   // an ESRI grid, which states its columns and rows
+    std::optional<double> cell_x, cell_y;   // pitch in the unit of the heights (ESRI grids)
     std::optional<double> width, height;    // extent of the whole grid
     // Extents of the whole grid without a unit (SPIP): the unit is that of their axis, else of the heights.
     std::optional<double> x_length, y_length;
@@ -24,7 +25,8 @@ struct TableHeader {
     std::optional<double> x_centre, y_centre, x_corner, y_corner;
     std::optional<double> not_measured;                  // value that marks a gap
     std::array<std::optional<double>, 3> column_units{}; // for the first three columns, from the line of their names
-    std::optional<std::string> column_names{};           // the line of the columns' names
+    std::array<bool, 3> unknown_units{}; // true for names with a unit in square brackets that is no length: "x [px]"
+    std::optional<std::string> column_names{}; // the line of the columns' names
 };
 
 // The cells of a line, without separators and quotes. separator: a blank stands for any number of blanks and tabs; a

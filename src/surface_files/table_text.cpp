@@ -5,8 +5,12 @@
 #include "surface_files/table_header.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 
 namespace vkfv::surface {
 namespace {
@@ -60,19 +64,72 @@ Style style_of(std::string_view line) {
     return style;
 }
 
-bool is_data(std::string_view line, const Style& style) {
-    bool first = true, numbers = false, words = false;
-    for (const std::string_view cell : cells_of(line, style.separator)) {
-        const bool number = number_of(cell, style).has_value();
-        // A line of data may begin with a gap, which is not a heading's word.
-        const bool gap = cell.empty() || cell == "NaN" || cell == "nan" || cell == "NAN" || cell == "BAD" ||
-                         cell == "Bad" || cell.find_first_not_of("*-") == std::string_view::npos;
-        words = words || (first && !number && !gap);
-        numbers = numbers || number || !cell.empty();
-        first = false;
-    }
-    return numbers && !words;
+// True for what programs write in place of a number that was not measured: nothing, dashes and stars, or one of their
+// words.
+bool is_gap(std::string_view cell) {
+    if (cell.find_first_not_of("*-") == std::string_view::npos)
+        return true;
+    std::string word;
+    for (const char c : cell.substr(cell[0] == '-' || cell[0] == '+' ? 1 : 0))
+        word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    constexpr std::array<std::string_view, 24> words = {
+        "nan",     "inf",     "infinity", "na",     "n/a",     "#n/a",      "null",      "none",
+        "bad",     "masked",  "invalid",  "void",   "missing", "undefined", "nodata",    "no data",
+        "no_data", "1.#qnan", "1.#snan",  "1.#ind", "1.#inf",  "nan(ind)",  "nan(snan)", "-nan(ind)"};
+    return std::ranges::find(words, word) != words.end();
 }
+
+// A line of data may begin with a gap, which is not a heading's word.
+bool is_data(std::string_view line, const Style& style) {
+    const auto cells = cells_of(line, style.separator);
+    const auto is_number = [&](std::string_view cell) { return number_of(cell, style).has_value(); };
+    const bool numbers = std::ranges::any_of(cells, is_number);
+    const bool gaps = std::ranges::all_of(cells, is_gap) &&
+                      std::ranges::any_of(cells, [](std::string_view cell) { return !cell.empty(); });
+    return gaps || (numbers && (is_number(cells.front()) || is_gap(cells.front())));
+}
+
+// Appends a row, whose columns are as many as those of the rows before. An empty cell at the end of a line looks like a
+// separator that closes the line: where the lines differ by it, the longer ones tell.
+class Rows {
+  public:
+    explicit Rows(TableText& table) : table_(table) {}
+
+    // Returns false if the row has another number of columns.
+    bool append(const std::vector<double>& row, bool closed) {
+        const std::size_t count = row.size();
+        if (table_.rows == 0)
+            table_.columns = count;
+        const bool longer = count == table_.columns + 1 && all_closed_;
+        const bool shorter = count + 1 == table_.columns && closed;
+        if (count != table_.columns && !longer && !shorter)
+            return false;
+        if (longer)
+            widen();
+        table_.values.insert(table_.values.end(), row.begin(), row.end());
+        if (shorter)
+            table_.values.push_back(std::numeric_limits<double>::quiet_NaN());
+        all_closed_ = all_closed_ && closed && !longer;
+        ++table_.rows;
+        return true;
+    }
+
+  private:
+    // Gives each row so far a gap at its end.
+    void widen() {
+        std::vector<double> values;
+        for (std::size_t row = 0; row < table_.rows; ++row) {
+            const auto begin = table_.values.begin() + static_cast<std::ptrdiff_t>(row * table_.columns);
+            values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(table_.columns));
+            values.push_back(std::numeric_limits<double>::quiet_NaN());
+        }
+        table_.values = std::move(values);
+        ++table_.columns;
+    }
+
+    TableText& table_;
+    bool all_closed_ = true; // every line so far ends with a separator
+};
 
 } // namespace
 
@@ -87,6 +144,8 @@ TableText parse_table_text(std::string_view text, const std::filesystem::path& p
     if (text.find('\0') != std::string_view::npos)
         file.fail(text.find('\0'), "", "a NUL", "text", "Export the table as plain text.");
     TableText table;
+    Rows rows(table);
+    std::vector<double> row;
     std::optional<Style> style;
     int number = 0;
     for (std::size_t at = 0; at < text.size();) {
@@ -102,27 +161,24 @@ TableText parse_table_text(std::string_view text, const std::filesystem::path& p
             continue;
         }
         style = own;
-        std::size_t count = 0;
+        row.clear();
         for (const std::string_view cell : cells_of(content, own.separator)) {
-            const bool word = cell.find_first_of("0123456789") == std::string_view::npos;
+            const bool word = cell.find_first_of("0123456789") == std::string_view::npos || is_gap(cell);
             const auto value = number_of(cell, own);
             if (!value && !word)
                 throw InputError({.where = {.file = file.file(), .line = number},
-                                  .key = fmt::format("column {}", count + 1),
+                                  .key = fmt::format("column {}", row.size() + 1),
                                   .found = plain_line(cell.substr(0, 40)),
                                   .expected = "a number, or a word for a point that is not measured",
                                   .remedy = "Export the table anew, with one separator and one decimal sign."});
-            table.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
-            ++count;
+            row.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
         }
-        if (table.rows > 0 && count != table.columns)
+        if (!rows.append(row, own.separator != ' ' && content.ends_with(own.separator)))
             throw InputError({.where = {.file = file.file(), .line = number},
                               .key = "columns",
-                              .found = fmt::format("{}", count),
+                              .found = fmt::format("{}", row.size()),
                               .expected = fmt::format("{}, as in the lines above", table.columns),
                               .remedy = "Export the table anew, with as many numbers in every line."});
-        table.columns = count;
-        ++table.rows;
     }
     if (table.rows == 0)
         file.fail({}, "", "no line of numbers", meant);

@@ -17,8 +17,9 @@ struct TableText {
 
 // Parses numbers between commas, semicolons, tabs or blanks, in quotes or not; with decimal commas where another
 // separator or the quotes leave no doubt. Lines before the first line of numbers, and those that begin with '#', are
-// the header; empty cells and words (NaN, BAD, ***) between numbers are not measured. text: UTF-8, from as_utf8().
-// meant: the expected content, for messages ("a table of heights"). Throws InputError.
+// the header; empty cells and words (NaN, BAD, ***) between numbers are not measured, also in the first line of
+// numbers. text: UTF-8, from as_utf8(). meant: the expected content, for messages ("a table of heights"). Throws
+// InputError.
 TableText parse_table_text(std::string_view text, const std::filesystem::path& path, const char* meant);
 
 // The text without blanks at its ends.

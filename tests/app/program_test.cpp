@@ -215,6 +215,26 @@ TEST(Program, WavesBeyondTheMachinesMemoryAreRefused) {
     EXPECT_THAT(result.standard_error, HasSubstr("the memory of this machine"));
 }
 
+// Before any image of it is traced; check warns of the same.
+TEST(Program, AnEvaluationBeyondTheMachinesMemoryIsRefused) {
+    const auto folder = fresh_folder("evaluation_beyond_memory");
+    write_file(folder / "c.toml", small_configuration);
+    const std::vector<std::string> settings = {"--device", "host",
+                                               "--rays",   "1000",
+                                               "--set",    "detector.pixels=16384",
+                                               "--set",    "topography.smoothing_steps=100"};
+    const auto with = [&](std::vector<std::string> command) {
+        command.insert(command.end(), settings.begin(), settings.end());
+        return run_program(command, folder);
+    };
+    const auto stack = with({"stack", "c.toml"});
+    EXPECT_EQ(stack.exit_code, 2);
+    EXPECT_THAT(stack.standard_error, AllOf(HasSubstr("of memory"), HasSubstr("the memory of this machine")));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+    const auto check = with({"check", "c.toml"});
+    EXPECT_THAT(check.standard_output, HasSubstr("The evaluation of 16384 x 16384 pixels takes"));
+}
+
 TEST(Program, ImageOfAScanPositionIsThatImageOfTheStack) {
     const auto folder = fresh_folder("image");
     write_file(folder / "c.toml", small_configuration);

@@ -119,6 +119,31 @@ TEST(Heartbeat, WarnsOnceBeforeHours) {
     EXPECT_THAT(messages.front().text, HasSubstr("are left at this speed"));
 }
 
+TEST(Heartbeat, WarnsBeforeHoursAlsoWhileOthersSpeak) {
+    const vkfv::MessagesHeard heard;
+    {
+        const CountedWork work(1);
+        vkfv::advance_work(1e-9);
+        const Heartbeat heartbeat(50ms);
+        for (int k = 0; k < 30 && heard.messages().empty(); ++k) {
+            vkfv::note_that_something_was_said();
+            std::this_thread::sleep_for(10ms);
+        }
+    }
+    const auto messages = heard.messages();
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_THAT(messages.front().text, HasSubstr("are left at this speed"));
+}
+
+TEST(Heartbeat, WorkThatIsDoneAlreadyIsLeftOut) {
+    const CountedWork work(4);
+    vkfv::advance_work(1);
+    vkfv::leave_out_work(2);
+    Listener listener;
+    const Heartbeat heartbeat(5ms);
+    EXPECT_DOUBLE_EQ(listener.next().share, 0.5);
+}
+
 TEST(Heartbeat, IsTheProgressOfAStackWhereThereIsOne) {
     std::ostringstream stream;
     vkfv::Progress progress(stream, vkfv::Progress::Style::lines);

@@ -499,6 +499,51 @@ TEST(Zmx, AConfigurationIsChosenByItsNumber) {
     EXPECT_THROW(parse_zmx(with_parameter, "lens.zmx", GlassCatalog::builtin(), 3), InputError);
     EXPECT_EQ(parse_zmx(with_parameter, "lens.zmx", GlassCatalog::builtin(), 1).prescription.surfaces[0].thickness,
               7.5);
+    for (const char* operand :
+         {"MIND 1 3 1.7", "MABB 1 3 30", "EDVA 1 3 2 1", "PAR1 1 3 0.1", "IGNR 1 3 1", "APMX 1 3 2"}) {
+        const auto with_operand = replaced(text, "MNUM 3 2", std::string("MNUM 3 2\n") + operand);
+        EXPECT_THROW(parse_zmx(with_operand, "lens.zmx", GlassCatalog::builtin(), 3), InputError) << operand;
+        EXPECT_NO_THROW(parse_zmx(with_operand, "lens.zmx", GlassCatalog::builtin(), 1)) << operand;
+    }
+    // An operand that nobody knows is told of where its configuration is taken.
+    const auto with_unknown = replaced(text, "MNUM 3 2", "MNUM 3 2\nQQQQ 1 3 0.5\nYFIE 1 3 2");
+    EXPECT_THAT(log_of(with_unknown, 3), AllOf(HasSubstr("QQQQ"), ::testing::Not(HasSubstr("YFIE"))));
+    EXPECT_THAT(log_of(with_unknown, 1), ::testing::Not(HasSubstr("QQQQ")));
+    const auto with_stop = replaced(text, "MNUM 3 2", "MNUM 3 2\nSTPS 0 3 2");
+    EXPECT_EQ(parse_zmx(with_stop, "lens.zmx", GlassCatalog::builtin(), 3).prescription.surfaces[1].role,
+              PrescribedSurface::Role::aperture_stop);
+}
+
+// Mail programs and editors take the blanks away by which surfaces' lines are indented.
+TEST(Zmx, UnknownKeywordsOfSurfacesThatAreNotIndented) {
+    std::string text;
+    std::istringstream lines(file_text("singlet.zmx"));
+    for (std::string line; std::getline(lines, line);) {
+        const auto begin = line.find_first_not_of(" \t");
+        text += begin == std::string::npos ? "" : line.substr(begin);
+        text += line.find("TYPE") != std::string::npos ? "\nQQQQ 1 0\n" : "\n";
+    }
+    const auto lens = parsed(text);
+    EXPECT_EQ(prescription_text(lens.prescription), prescription_text(parsed(file_text("singlet.zmx")).prescription));
+    EXPECT_THAT(log_of(text), HasSubstr("QQQQ"));
+}
+
+TEST(Zmx, DecimalCommasOfGlassesAreRead) {
+    const auto glass = [](const std::string& line) {
+        const auto lens = parsed(replaced(file_text("singlet.zmx"), "GLAS N-BK7", line));
+        return lens.prescription.surfaces[0].medium_after.index(0.5875618);
+    };
+    EXPECT_NEAR(glass("GLAS NONE-SUCH 0 0 1,62 36,3"), 1.62, 1e-6);
+    EXPECT_NEAR(glass("GLAS ___BLANK 1 0 1,62 36,3"), 1.62, 1e-6);
+    for (const char* no_glass : {"000000", "517003", "000642"}) {
+        EXPECT_FALSE(glass_of_code(no_glass).has_value()) << no_glass;
+    }
+}
+
+TEST(Zmx, CataloguesMayBeQuoted) {
+    const auto text = file_text("singlet.zmx");
+    EXPECT_EQ(prescription_text(parsed(replaced(text, "GCAT SCHOTT", "GCAT \"SCHOTT\"")).prescription),
+              prescription_text(parsed(text).prescription));
 }
 
 } // namespace

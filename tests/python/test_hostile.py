@@ -1,5 +1,6 @@
 """The program among unlucky circumstances: limits, closed descriptors, names that a terminal would obey."""
 
+import csv
 import ctypes
 import hashlib
 import json
@@ -10,6 +11,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import xml.dom.minidom
 from pathlib import Path
 
 import shared
@@ -81,8 +83,51 @@ class HostileTest(unittest.TestCase):
                 self.assertNotIn(character.encode(), done.stderr)
             self.assertIn(b"\\x", done.stderr)
 
+    def test_names_command_nothing_in_what_is_written(self):
+        """Output and files of every kind are safe to show, and JSON and SVG stay valid, whatever a file is called."""
+        name = os.fsdecode(b"e\x1b[31m\nx,\"<&>\x9b\xc2\x9b\xff")
+        surface = shared.folder() / (name + ".x3p")
+        surface.write_bytes((shared.tilted().folder / "topography.x3p").read_bytes())
+        configuration = shared.folder() / (name + ".toml")
+        configuration.write_bytes(shared.configuration().read_bytes())
+        out = shared.folder() / "named"
+        commands = (
+            ("surface", surface, "--json"),
+            ("surface", surface),
+            ("compare", surface, surface, "--json", "--out", out),
+            ("compare", surface, surface),
+            ("check", configuration, "--json"),
+            ("check", configuration),
+            ("layout", configuration, shared.folder() / "named.svg"),
+            ("image", configuration, "--z", "0", "--rays", "1e3", "--device", "host", "--json", "--out", "named.tif"),
+            ("verify", surface),
+        )
+        for command in commands:
+            done = run(*command)
+            self.assertNotIn(b"unexpected failure", done.stderr, command)
+            self.assertEqual(done.returncode, 2 if command[0] == "verify" else 0, (command, done.stderr))
+            for said in (done.stdout, done.stderr):
+                self.assertEqual(said.translate(None, b"\n\t"), bytes(c for c in said if c >= 32 and c != 127), command)
+                self.assertNotIn("\x9b", said.decode("utf-8"), command)
+            if "--json" in command:
+                json.loads(done.stdout)
+        json.loads((out / "compare.json").read_text(encoding="utf-8"))
+        for file in (shared.folder() / "named.svg", out / "compare.svg"):
+            xml.dom.minidom.parse(str(file))
+
+    def test_a_label_stays_in_its_cell_and_its_folder(self):
+        text = shared.configuration().read_text(encoding="utf-8")
+        file = shared.folder() / "labelled.toml"
+        file.write_text(text + '\n[sweep]\n[[sweep.parameter]]\nkey = "trace.seed"\nlabel = "a, \\"b\\" | c"\nvalues = [1, 2]\n',
+                        encoding="utf-8")
+        done = run("sweep", file, "--device", "host", "--rays", "1e3", "--out", "labelled")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = list(csv.reader((shared.folder() / "labelled" / "sweep.csv").read_text(encoding="utf-8").splitlines()))
+        self.assertEqual(rows[0][0], 'a, "b" | c')
+        self.assertEqual([row[0] for row in rows[1:]], ["1", "2"])
+
     def test_signals_are_told(self):
-        for number, name in ((12, "SIGUSR2"), (24, "SIGXCPU"), (3, "SIGQUIT")):
+        for number, name in ((12, "SIGUSR2"), (24, "SIGXCPU"), (3, "SIGQUIT"), (26, "SIGVTALRM"), (7, "SIGBUS")):
             process = subprocess.Popen(
                 [vkfv.find_program(), "stack", shared.configuration(), "--rays", "1e9", "--out", str(shared.folder() / name)],
                 stdout=subprocess.PIPE,

@@ -7,6 +7,7 @@
 #include "surface_files/npy.hpp"
 #include "surface_files/surface_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -64,6 +65,31 @@ TEST(TableStatements, MarksOfPointsThatWereNotMeasured) {
     EXPECT_THAT(heights_of(table("1,2\n-9999,4\n", given))[2], near(-9999)); // nobody said it
 }
 
+TEST(TableStatements, GapsHaveManyWordsAndStandAnywhere) {
+    for (const char* gap : {"inf", "-inf", "Infinity", "-nan", "NaN", "NA", "N/A", "#N/A", "NULL", "masked", "Invalid",
+                            "1.#QNAN", "-1.#IND", "BAD", "***", "---", "\"\"", "", "nan(ind)"})
+        for (const char separator : {',', ';', '\t'}) {
+            const auto line = [&](const std::string& first, const std::string& second, const std::string& third) {
+                return first + separator + second + separator + third + "\n";
+            };
+            const std::string cell = gap;
+            // At the beginning of the first line it is no heading's word, and at the end of a line no closing
+            // separator.
+            EXPECT_THAT(heights_of(table(line(cell, "2", "3") + line("4", cell, "6") + line("7", "8", cell), given)),
+                        ElementsAre(IsNan(), near(2), near(3), near(4), IsNan(), near(6), near(7), near(8), IsNan()))
+                << gap << separator;
+            EXPECT_THAT(heights_of(table(line("1", "2", cell) + line("4", "5", cell) + line("7", "8", "9"), given)),
+                        ElementsAre(near(1), near(2), IsNan(), near(4), near(5), IsNan(), near(7), near(8), near(9)))
+                << gap << separator;
+        }
+    // Separators that close every line are no column.
+    EXPECT_EQ(table("1,2,\n3,4,\n", given).map.columns(), 2);
+    EXPECT_EQ(table(";;;\nz;;;\n1;2;\n3;4;\n", given).map.columns(), 2);
+    for (const char* header :
+         {"_FillValue: 1e20", "Undefined = 1e20", "# NaN value = 1e20", "\"Invalid\",\"1e20\"", "NODATA_value 1,0e20"})
+        EXPECT_THAT(heights_of(table(std::string(header) + "\n1,2\n1e20,4\n", given))[2], IsNan()) << header;
+}
+
 TEST(TableStatements, AGridOfEsriCountsInOneUnit) {
     const std::string header = "ncols 2\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2.0\nNODATA_value -9999\n";
     const SurfaceFile file = table(header + "1 2\n-9999 4\n", {.pitch = {}, .unit = um});
@@ -77,6 +103,12 @@ TEST(TableStatements, AGridOfEsriCountsInOneUnit) {
     const SurfaceFile other = table(header + "1 2\n3 4\n", {.pitch = 3 * um, .unit = um});
     ASSERT_EQ(other.warnings.size(), 1u);
     EXPECT_THAT(other.warnings[0], testing::AllOf(HasSubstr("2 um"), HasSubstr("3 um"), HasSubstr("a.csv")));
+    // Cells that are no squares, and decimal commas.
+    const SurfaceFile oblong = table("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 2,5\ndy 3,0\n1,5 2,0\n3,0 4,5\n",
+                                     {.pitch = {}, .unit = um});
+    EXPECT_THAT(heights_of(oblong), ElementsAre(near(1.5), near(2), near(3), near(4.5)));
+    EXPECT_THAT(oblong.map.pitch_x, near(2.5 * um));
+    EXPECT_THAT(oblong.map.pitch_y, near(3 * um));
 }
 
 TEST(TableStatements, UnitsInTheNamesOfColumnsAreUsed) {
@@ -84,7 +116,9 @@ TEST(TableStatements, UnitsInTheNamesOfColumnsAreUsed) {
     for (const char* names :
          {"x [mm],y [mm],z [um]", "X (mm);Y (mm);Z (\xC2\xB5m)", "x/mm,y/mm,z/\xCE\xBCm",
           "# x [mm], y [mm], z [\xC2\xB5m]", "x,y,z\nmm,mm,um", "x\ty\tz\n[mm]\t[mm]\t[um]", "X<mm>,Y<mm>,Z<um>",
-          "\"x [mm]\",\"y [mm]\",\"height [micron]\"", "# x (mm) y (mm) z (um)"}) {
+          "\"x [mm]\",\"y [mm]\",\"height [micron]\"", "# x (mm) y (mm) z (um)", "x_mm,y_mm,z_um", "X mm,Y mm,Z um",
+          "x in mm,y in mm,height in micrometers", "X [MM],Y [MM],Z [UM]", "x {mm},y {mm},z {micrometre}",
+          "x, mm;y, mm;z, um"}) {
         const SurfaceFile file = table(std::string(names) + "\n" + points);
         EXPECT_THAT(heights_of(file), ElementsAre(near(7), near(8), near(5), near(6))) << names;
         EXPECT_THAT(file.map.pitch_x, near(0.002)) << names;
@@ -105,6 +139,15 @@ TEST(TableStatements, UnitsInTheNamesOfColumnsAreUsed) {
     // Brackets without a unit of length say nothing, nor does a line of which one word alone is a unit.
     EXPECT_THROW((void)table("x,y,z\npx,px,um\n" + points), InputError);
     EXPECT_THROW((void)table("x [px],y [px],z [V]\n" + points), InputError);
+    // Positions in a unit that is no length need the pitch.
+    EXPECT_THROW((void)table("x [px],y [px],z [um]\n" + points), InputError);
+    EXPECT_THAT(table("x [px],y [px],z [um]\n" + points, {.pitch = 3 * um, .unit = {}}).map.pitch_x, near(3 * um));
+    for (const auto& [unit, mm] :
+         {std::pair("in", 25.4), std::pair("inches", 25.4), std::pair("mil", 0.0254), std::pair("\xC3\x85", 1e-7),
+          std::pair("angstroms", 1e-7), std::pair("nanometers", 1e-6), std::pair("Metre", 1e3),
+          std::pair("centimetres", 10.0)})
+        EXPECT_THAT(table(fmt::format("x [{0}],y [{0}],z [{0}]\n", unit) + points).map.pitch_x, near(0.002 * mm))
+            << unit;
 }
 
 TEST(TableStatements, TablesOfInstrumentsAndSpreadsheetsHaveQuotes) {
@@ -137,13 +180,15 @@ TEST(TableStatements, TextOfAnyEncoding) {
 }
 
 TEST(TableStatements, AProfileIsNoMap) {
-    std::string two = "Position,Height\n", three = "mm,um,um\n", one = "Height\n";
+    std::string two = "Position,Height\n", three = "mm,um,um\n", one = "Height\n", positions, heights;
     for (int k = 0; k < 50; ++k) {
+        positions += (k > 0 ? "," : "") + std::to_string(0.5 * k);
+        heights += (k > 0 ? "," : "") + std::to_string(std::sin(0.3 * k));
         two += std::to_string(0.5 * k) + "," + std::to_string(std::sin(0.3 * k)) + "\n";
         three += std::to_string(0.5 * k) + "," + std::to_string(std::sin(0.3 * k)) + ",0.5\n";
         one += std::to_string(std::sin(0.3 * k)) + "\n";
     }
-    for (const std::string& text : {two, three, one}) {
+    for (const std::string& text : {two, three, one, heights + "\n", positions + "\n" + heights + "\n"}) {
         try {
             (void)table(text, given);
             ADD_FAILURE() << "accepted: " << text.substr(0, 20);
@@ -154,6 +199,7 @@ TEST(TableStatements, AProfileIsNoMap) {
     // A map of few columns is a map, not a list of points.
     EXPECT_EQ(table("3,1\n1,2\n2,2\n5,4\n", given).map.columns(), 2);
     EXPECT_EQ(table("1,2,3\n4,5,6\n", given).map.columns(), 3);
+    EXPECT_EQ(table(heights + "\n" + heights + "\n", given).map.rows(), 2);
 }
 
 // --- Arrays

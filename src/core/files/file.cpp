@@ -231,6 +231,9 @@ InputFile::InputFile(const fs::path& path, const FileRequest& request) : path_(p
                           .expected = request.expected,
                           .remedy = request.remedy});
     };
+    if (path.empty()) {
+        refuse("an empty name");
+    }
     // O_NONBLOCK: opening a pipe must not wait for its writer.
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (!file.open()) {

@@ -1,5 +1,7 @@
 #include "core/messages/error.hpp"
 
+#include "core/messages/safe_text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,7 @@
 namespace vkfv {
 
 std::string SourceLocation::to_string() const {
-    std::string text = file.string();
+    std::string text = safe_line(file.string());
     if (byte_offset) {
         return fmt::format("{}@{}", text, *byte_offset);
     }
@@ -30,10 +32,10 @@ std::string describe(const InputProblem& problem) {
         text += ": ";
     }
     if (!problem.key.empty()) {
-        text += problem.key;
-        text += problem.found.empty() ? ": " : " = " + problem.found + ": ";
+        text += safe_line(problem.key);
+        text += problem.found.empty() ? ": " : " = " + safe_line(problem.found) + ": ";
     } else if (!problem.found.empty()) {
-        text += problem.found + ": ";
+        text += safe_line(problem.found) + ": ";
     }
     text += "expected " + problem.expected;
     if (!problem.remedy.empty()) {

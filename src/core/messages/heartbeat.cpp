@@ -55,7 +55,8 @@ HeartbeatState state_now() {
     const auto [stage, begun] = stage_now();
     Work& counted = work();
     const std::scoped_lock lock(counted.mutex);
-    const double share = counted.under_way ? std::min(work_done.load() / counted.total, 1.0) : 0.0;
+    const bool counts = counted.under_way && counted.total > 0;
+    const double share = counts ? std::min(work_done.load() / counted.total, 1.0) : 0.0;
     if (!(share > 0)) {
         return {.stage = stage, .seconds = seconds_since(begun)};
     }
@@ -122,6 +123,12 @@ void advance_work(double done) {
     work_done.fetch_add(done * share_of_parts.load(std::memory_order_relaxed), std::memory_order_relaxed);
 }
 
+void leave_out_work(double done) {
+    Work& counted = work();
+    const std::scoped_lock lock(counted.mutex);
+    counted.total -= done;
+}
+
 PartOfWork::PartOfWork(double share) : before_(share_of_parts.load()) {
     share_of_parts = share * before_;
 }
@@ -162,16 +169,21 @@ Heartbeat::~Heartbeat() {
 
 void Heartbeat::listen(std::chrono::milliseconds interval) {
     std::unique_lock lock(mutex_);
+    Clock::time_point next_look = Clock::now() + interval;
     while (!end_) {
         const Clock::time_point next(Clock::duration(last_said.load()) + interval);
-        if (Clock::now() < next) {
-            ended_.wait_until(lock, next);
+        const Clock::time_point now = Clock::now();
+        if (now < next && now < next_look) {
+            ended_.wait_until(lock, std::min(next, next_look));
             continue;
         }
         const HeartbeatState state = state_now();
-        note_that_something_was_said(); // a quiet teller would not postpone the next one
-        tell(state);
+        if (now >= next) {
+            note_that_something_was_said(); // a quiet teller would not postpone the next one
+            tell(state);
+        }
         warn_of_hours(state);
+        next_look = now + interval;
     }
 }
 

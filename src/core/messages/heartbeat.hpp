@@ -27,6 +27,9 @@ class CountedWork {
 // Adds to the progress of the counted work, from any thread.
 void advance_work(double done);
 
+// Takes work that turned out to be done already off the total of the counted work, from any thread.
+void leave_out_work(double done);
+
 // Scales the progress counted by advance_work() by this share during its life, for a loop over equal parts of a unit of
 // counted work.
 class PartOfWork {
@@ -59,7 +62,8 @@ void note_that_something_was_said();
 // default. After the return the previous function is no longer called.
 void tell_heartbeats_by(std::function<void(const HeartbeatState&)> teller);
 
-// The thread of the heartbeat. It warns once if counted work will take hours.
+// The thread of the heartbeat. It warns once if counted work will take hours, also where so much else is said that no
+// heartbeat is due.
 class Heartbeat {
   public:
     explicit Heartbeat(std::chrono::milliseconds interval = std::chrono::seconds(10));

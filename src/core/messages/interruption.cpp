@@ -1,6 +1,7 @@
 #include "core/messages/interruption.hpp"
 
 #include "core/messages/log.hpp"
+#include "core/messages/safe_text.hpp"
 
 #include <unistd.h>
 
@@ -19,7 +20,7 @@ namespace {
 constexpr std::size_t most_bytes = 500;
 
 struct Sentence {
-    std::array<char, 6 * most_bytes + 2> text; // a byte takes up to six in JSON
+    std::array<char, 6 * most_bytes + 2> text; // a byte takes up to six when it is escaped
     std::size_t bytes;
 };
 
@@ -48,13 +49,39 @@ struct Signal {
     int number;
     std::string_view name;
 };
-constexpr std::array signals = {Signal{SIGINT, "SIGINT"},   Signal{SIGTERM, "SIGTERM"}, Signal{SIGHUP, "SIGHUP"},
-                                Signal{SIGQUIT, "SIGQUIT"}, Signal{SIGXCPU, "SIGXCPU"}, Signal{SIGUSR1, "SIGUSR1"},
-                                Signal{SIGUSR2, "SIGUSR2"}, Signal{SIGALRM, "SIGALRM"}};
+constexpr std::array signals = {
+    Signal{SIGINT, "SIGINT"},       Signal{SIGTERM, "SIGTERM"}, Signal{SIGHUP, "SIGHUP"},   Signal{SIGQUIT, "SIGQUIT"},
+    Signal{SIGXCPU, "SIGXCPU"},     Signal{SIGUSR1, "SIGUSR1"}, Signal{SIGUSR2, "SIGUSR2"}, Signal{SIGALRM, "SIGALRM"},
+    Signal{SIGVTALRM, "SIGVTALRM"}, Signal{SIGPROF, "SIGPROF"}, Signal{SIGPOLL, "SIGPOLL"}, Signal{SIGPWR, "SIGPWR"},
+    Signal{SIGSTKFLT, "SIGSTKFLT"}};
+
+// Signals that a fault of the program raises, or of a driver in it.
+constexpr std::array faults = {Signal{SIGSEGV, "SIGSEGV"}, Signal{SIGBUS, "SIGBUS"},   Signal{SIGFPE, "SIGFPE"},
+                               Signal{SIGILL, "SIGILL"},   Signal{SIGABRT, "SIGABRT"}, Signal{SIGSYS, "SIGSYS"},
+                               Signal{SIGTRAP, "SIGTRAP"}};
+
+// The stack of the handlers, for a fault that has used up the main thread's own.
+constexpr std::size_t handler_stack_bytes = 1 << 16;
+alignas(16) std::array<char, handler_stack_bytes> handler_stack;
+
+std::string_view name_of(int signal) {
+    const auto known = std::ranges::find(signals, signal, &Signal::number);
+    const auto fault = std::ranges::find(faults, signal, &Signal::number);
+    return known != signals.end() ? known->name : fault != faults.end() ? fault->name : "a signal";
+}
+
+extern "C" void on_fault(int signal) {
+    say(as_json ? "{\"level\":\"error\",\"signal\":\"" : "\nvkfv: ended by ");
+    say(name_of(signal));
+    say(as_json ? "\",\"text\":\"" : ". ");
+    say("This is a fault of the program, or of the device's driver: report it with the command line and the "
+        "configuration. What a stack has stored is kept.");
+    say(as_json ? "\"}\n" : "\n");
+    ::raise(signal); // the handler has been reset to the default
+}
 
 extern "C" void on_interruption(int signal) {
-    const auto known = std::ranges::find(signals, signal, &Signal::number);
-    const std::string_view name = known == signals.end() ? "a signal" : known->name;
+    const std::string_view name = name_of(signal);
     const Sentence& sentence = sentences[at_hand.load()];
     say(as_json ? "{\"level\":\"error\",\"signal\":\"" : "\nvkfv: ended by ");
     say(name);
@@ -81,6 +108,20 @@ void explain_interruptions() {
         action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_NODEFER;
         ::sigaction(signal, &action, nullptr);
     }
+    for (const auto& [signal, name] : faults) {
+        struct sigaction before {};
+        if (::sigaction(signal, nullptr, &before) != 0 || before.sa_handler != SIG_DFL) {
+            continue; // a sanitizer has its own words, and its own stack for them
+        }
+        if (signal == SIGSEGV) {
+            const stack_t stack = {.ss_sp = handler_stack.data(), .ss_flags = 0, .ss_size = handler_stack.size()};
+            ::sigaltstack(&stack, nullptr);
+        }
+        struct sigaction action {};
+        action.sa_handler = on_fault;
+        action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_NODEFER | SA_ONSTACK;
+        ::sigaction(signal, &action, nullptr);
+    }
 }
 
 void interruptions_as_json() {
@@ -90,7 +131,7 @@ void interruptions_as_json() {
 
 void say_when_interrupted(std::string_view sentence) {
     sentence = sentence.substr(0, most_bytes);
-    const std::string quoted = as_json ? json_quoted(sentence) : std::string(sentence);
+    const std::string quoted = as_json ? json_quoted(sentence) : safe_line(sentence);
     const std::size_t next = 1 - at_hand.load();
     Sentence& into = sentences[next];
     into.bytes = std::min(quoted.size(), into.text.size());

@@ -8,6 +8,7 @@ namespace vkfv {
 // Installs handlers for SIGINT, SIGTERM, SIGHUP and other signals by which a user, a scheduler or a limit ends a
 // program. They print the current sentence on standard error and then end the program by the same signal, so that a
 // shell sees it (130, 143, 129). A signal that was ignored at the start stays ignored (nohup). SIGXFSZ is ignored.
+// Signals of a fault, such as SIGSEGV, say that it is one.
 void explain_interruptions();
 
 // Sets the sentence; at most 500 bytes of it are printed.

@@ -2,6 +2,8 @@
 
 #include "core/messages/heartbeat.hpp"
 #include "core/messages/interruption.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 
 #include <fmt/chrono.h>
 #include <nlohmann/json.hpp>
@@ -33,11 +35,6 @@ std::string now_text() {
     return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now)), milliseconds);
 }
 
-// JSON text of a line; invalid UTF-8, as in a file's name, is replaced.
-std::string dumped(const Json& line) {
-    return line.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 class JsonFormatter final : public spdlog::formatter {
   public:
     void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
@@ -50,28 +47,20 @@ class JsonFormatter final : public spdlog::formatter {
     std::unique_ptr<formatter> clone() const override { return std::make_unique<JsonFormatter>(); }
 };
 
-// The text of a message made safe for a terminal. Control characters in a file or its name, which a terminal would
-// obey, become "\xNN", except tabs and ends of lines.
-std::string for_terminal(std::string_view text) {
-    std::string result;
-    for (const char character : text) {
-        const auto code = static_cast<unsigned char>(character);
-        if ((code < 0x20 && character != '\n' && character != '\t') || code == 0x7f) {
-            result += fmt::format("\\x{:02x}", code);
-        } else {
-            result += character;
-        }
-    }
-    return result;
-}
-
 // A flag of spdlog's pattern for the message made safe. The colours around it, which are control characters too, come
-// from the sink and are not affected.
+// from the sink and are not affected. Further lines of a message are indented, so that a name with an end of line in it
+// cannot pass for a message of its own.
 class SafeMessage final : public spdlog::custom_flag_formatter {
+    static constexpr std::string_view indent = "  ";
+
   public:
     void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& line) override {
-        const std::string text = for_terminal({message.payload.data(), message.payload.size()});
-        line.append(text.data(), text.data() + text.size());
+        for (const char character : safe_text({message.payload.data(), message.payload.size()})) {
+            line.push_back(character);
+            if (character == '\n') {
+                line.append(indent.data(), indent.data() + indent.size());
+            }
+        }
     }
     std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<SafeMessage>(); }
 };
@@ -148,7 +137,7 @@ std::string json_line(std::string_view kind, std::string_view name, const LogFie
     for (const auto& [key, value] : fields) {
         std::visit([&, &key = key](const auto& one) { line[key] = one; }, value);
     }
-    return dumped(line);
+    return json_text(line, JsonLayout::one_line);
 }
 
 void log_event(std::string_view name, const LogFields& fields) {
@@ -159,7 +148,7 @@ void log_event(std::string_view name, const LogFields& fields) {
 }
 
 std::string json_quoted(std::string_view text) {
-    return dumped(Json(text));
+    return json_text(Json(text), JsonLayout::one_line);
 }
 
 void log_failure(const std::string& message, int exit_code) {
@@ -168,7 +157,7 @@ void log_failure(const std::string& message, int exit_code) {
             (json_line("level", "error", {{"text", message}, {"exit_code", std::int64_t{exit_code}}}) + "\n").c_str(),
             stderr);
     } else {
-        std::fputs(("vkfv: " + for_terminal(message) + "\n").c_str(), stderr);
+        std::fputs(("vkfv: " + safe_text(message) + "\n").c_str(), stderr);
     }
 }
 

@@ -1,5 +1,7 @@
 #include "core/parsing/text_encoding.hpp"
 
+#include "core/messages/safe_text.hpp"
+
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -70,24 +72,13 @@ std::optional<ByteOrder> order_of_utf16(std::string_view bytes) {
     return nuls[0] > 0 ? ByteOrder::big : ByteOrder::little;
 }
 
-// True for well-formed UTF-8 by the Unicode standard's table 3-7: without overlong forms and surrogates.
 bool is_utf8(std::string_view text) {
-    for (std::size_t i = 0; i < text.size();) {
-        const auto lead = static_cast<unsigned char>(text[i]);
-        const std::size_t length = lead < 0x80 ? 1 : lead < 0xc2 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
-        if (length == 0 || lead > 0xf4 || i + length > text.size()) {
+    while (!text.empty()) {
+        const std::size_t bytes = first_character(text).bytes;
+        if (bytes == 0) {
             return false;
         }
-        for (std::size_t j = 1; j < length; ++j) {
-            const auto byte = static_cast<unsigned char>(text[i + j]);
-            const bool second = j == 1;
-            const unsigned low = second && lead == 0xe0 ? 0xa0 : second && lead == 0xf0 ? 0x90 : 0x80;
-            const unsigned high = second && lead == 0xed ? 0x9f : second && lead == 0xf4 ? 0x8f : 0xbf;
-            if (byte < low || byte > high) {
-                return false;
-            }
-        }
-        i += length;
+        text.remove_prefix(bytes);
     }
     return true;
 }

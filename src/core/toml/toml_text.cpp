@@ -1,3 +1,4 @@
+#include "core/messages/safe_text.hpp"
 #include "core/toml/toml_reader.hpp"
 
 #include <fmt/format.h>
@@ -55,15 +56,20 @@ std::optional<std::string> remedy_for_length_um(double value, const NumberRange&
 
 std::string toml_quoted(std::string_view text) {
     std::string quoted = "\"";
-    for (const char character : text) {
-        if (character == '"' || character == '\\') {
-            quoted += '\\';
-            quoted += character;
-        } else if (static_cast<unsigned char>(character) < 0x20 || character == 0x7f) {
-            quoted += fmt::format("\\u{:04X}", static_cast<unsigned>(character));
+    while (!text.empty()) {
+        const Utf8Character character = first_character(text);
+        const std::size_t bytes = std::max<std::size_t>(character.bytes, 1);
+        if (character.bytes == 0) {
+            quoted += "\\uFFFD"; // TOML is UTF-8, and has no form for other bytes
+        } else if (is_unsafe_character(character.code)) {
+            quoted += fmt::format("\\u{:04X}", character.code);
         } else {
-            quoted += character;
+            if (text.front() == '"' || text.front() == '\\') {
+                quoted += '\\';
+            }
+            quoted += text.substr(0, bytes);
         }
+        text.remove_prefix(bytes);
     }
     return quoted + '"';
 }

@@ -2,6 +2,7 @@
 
 #include "core/files/file.hpp"
 #include "core/mathematics/units.hpp"
+#include "core/messages/json_text.hpp"
 #include "measurement/evaluation/evaluation_figures.hpp"
 #include "measurement/evaluation/stack_page.hpp"
 #include "measurement/scene/warning_json.hpp"
@@ -22,8 +23,8 @@ namespace {
 // Writes the times apart from the results, since no two runs take the same time. They are a script because a page that
 // was opened from a disk may load no other kind of file.
 void write_timings_script(const std::filesystem::path& folder) {
-    const nlohmann::json text = read_file(folder / "timings.csv");
-    write_file(folder / "timings.js", "vkfv.timings.show(" + text.dump() + ");\n");
+    const nlohmann::ordered_json text = read_file(folder / "timings.csv");
+    write_file(folder / "timings.js", "vkfv.timings.show(" + json_text(text, JsonLayout::one_line) + ");\n");
 }
 
 // "Specimen "step" under a 20x/0.41 microscope: 512 x 512 pixels of 0.345 um, light of 0.588 um."
@@ -71,7 +72,7 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     results.update(stack.origin);
     results["verdict"] = json_of(verdict_of(evaluation));
     results["warnings"] = json_of(stack.warnings);
-    folder.write(results_name, results.dump(2) + "\n");
+    folder.write(results_name, json_text(results) + "\n");
     page.results = std::move(results);
     folder.write("report.html", stack_page(page));
     scan::append_timing(folder.path(), "evaluation", evaluation.seconds);

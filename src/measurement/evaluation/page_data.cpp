@@ -280,7 +280,7 @@ void add_data(report::Page& page, const EvaluationData& frames, const std::vecto
     for (const auto& [id, text] : frames.blobs) {
         page.data(id, text);
     }
-    page.data("data", report::json_text(json));
+    page.data("data", report::page_json(json));
     for (const char* file : {"d3.min.js", "d3-sankey.min.js", "three.min.js", "OrbitControls.js", "core.js", "chart.js",
                              "maps.js", "profile.js", "frames.js", "curve.js", "surface.js", "distributions.js",
                              "light.js", "timings.js", "main.js"}) {

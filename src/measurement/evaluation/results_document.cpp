@@ -4,6 +4,7 @@
 #include "core/parsing/json_depth.hpp"
 #include "measurement/scene/warning_json.hpp"
 #include "report/declared_figures.hpp"
+#include "report/parameter_table.hpp"
 
 #include <fmt/format.h>
 
@@ -117,6 +118,7 @@ nlohmann::ordered_json results_of(const Evaluation& evaluation, const std::vecto
         add_dimensions(results["diffracted"], evaluation.diffracted->dimensions);
     }
     results.update(report::as_declared("results", figures_of_curves(evaluation)));
+    results["std_direction"] = report::std_direction;
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     return results;
 }

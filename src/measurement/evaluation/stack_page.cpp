@@ -1,5 +1,6 @@
 #include "measurement/evaluation/stack_page.hpp"
 
+#include "core/messages/json_text.hpp"
 #include "measurement/scene/verdict.hpp"
 #include "measurement/scene/warning_json.hpp"
 #include "report/declared_figures.hpp"
@@ -44,7 +45,7 @@ std::string text_of(const nlohmann::ordered_json& value) {
     }
     return value.is_string() ? value.get<std::string>()
            : value.is_null() ? report::reader_number(surface::undefined)
-                             : value.dump();
+                             : json_text(value, JsonLayout::one_line);
 }
 
 // Appends columns of numbers to the rows below the head. All numbers of a column have the same form.
@@ -259,9 +260,7 @@ std::string stack_page(const StackPage& content) {
         page.paragraph("Nominal values are those of the true surface at the same points, treated alike.");
     }
     const bool measured = add_parameters(page, "", plain.figures);
-    if (!measured) {
-        page.paragraph("Nothing was measured.");
-    }
+    page.paragraph(measured ? std::string(report::std_direction) + "." : "Nothing was measured.");
     if (content.diffracted) {
         add_parameters(page, "With diffraction, ", content.diffracted->figures);
     }

@@ -1,6 +1,7 @@
 #include "measurement/image/camera_images.hpp"
 
 #include "core/messages/error.hpp"
+#include "core/messages/json_text.hpp"
 #include "measurement/image/camera_report.hpp"
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"
@@ -72,7 +73,7 @@ nlohmann::ordered_json CameraNote::json() const {
 }
 
 std::string CameraNote::text() const {
-    return json().dump();
+    return json_text(json(), JsonLayout::one_line);
 }
 
 std::optional<CameraNote> CameraNote::parse(const std::string& text) {

@@ -3,6 +3,7 @@
 #include "core/files/file.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/messages/heartbeat.hpp"
+#include "core/messages/safe_text.hpp"
 #include "core/messages/stages.hpp"
 #include "measurement/image/camera_images.hpp"
 #include "measurement/scene/assembly.hpp"
@@ -132,8 +133,8 @@ std::string summary(const ImageResult& result) {
     const auto note = note_of(result.exposure);
     return text_of(image.ledger) + (note ? text_of(*note) : std::string()) +
            fmt::format("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n{}\n", image.rays, image.detected,
-                       static_cast<double>(image.rays) / image.seconds, image.seconds, result.file.string(),
-                       result.picture.string());
+                       static_cast<double>(image.rays) / image.seconds, image.seconds, safe_line(result.file.string()),
+                       safe_line(result.picture.string()));
 }
 
 Json image_json(const ImageResult& result) {

@@ -5,6 +5,7 @@
 #include "core/files/files_read.hpp"
 #include "core/files/installation.hpp"
 #include "core/files/user_cache.hpp"
+#include "core/messages/json_text.hpp"
 #include "core/messages/log.hpp"
 #include "measurement/instrument/instrument_figures.hpp"
 #include "measurement/scene/warning_json.hpp"
@@ -43,7 +44,7 @@ std::string name_of(const Configuration& configuration, const std::filesystem::p
     for (const auto& folder : asset_folders(configuration.file.parent_path())) {
         all.push_back(folder.string());
     }
-    return std::string(kept_names) + Digest().add(all.dump(-1, ' ', false, Json::error_handler_t::replace)).sha256();
+    return std::string(kept_names) + Digest().add(json_text(all, JsonLayout::one_line)).sha256();
 }
 
 std::string written(const KeptReport& kept) {
@@ -57,7 +58,7 @@ std::string written(const KeptReport& kept) {
     json["figures_that_matter"] = kept.report.figures_that_matter;
     json["all_figures"] = kept.report.all_figures;
     json["json"] = kept.report.json;
-    return json.dump();
+    return json_text(json, JsonLayout::one_line);
 }
 
 std::optional<KeptReport> read_kept(const std::string& name) {

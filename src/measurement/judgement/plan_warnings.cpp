@@ -4,6 +4,7 @@
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/scene/host_memory.hpp"
+#include "measurement/scene/wave_devices.hpp"
 
 #include <fmt/format.h>
 
@@ -139,6 +140,25 @@ void warn_of_smoothing(const Plan& plan, const optics::Instrument& instrument, s
     }
 }
 
+// Waves have warnings of their own (wave_warnings_of_device()).
+void warn_of_host_images(const Configuration& configuration, std::vector<Warning>& warnings) {
+    if (configuration.trace.device != "host" || configuration.trace.waves) {
+        return;
+    }
+    const ImageSize pixels = configuration.instrument.detector_pixels;
+    const std::uint64_t bytes = counts_of_host(configuration.trace, pixels), there = memory_of_host();
+    if (bytes > there) {
+        warnings.push_back({.code = "memory",
+                            .key = "detector.pixels",
+                            .value = text_of(pixels),
+                            .works = pixels_that_fit(pixels, bytes, there),
+                            .sentence = fmt::format(
+                                "An image of {} x {} pixels takes {} of memory where this machine's processors trace "
+                                "it, and it has {}. Take fewer detector.pixels, or another trace.device.",
+                                pixels.columns, pixels.rows, bytes_text(bytes), bytes_text(there))});
+    }
+}
+
 void warn_of_memory(const Plan& plan, const optics::Instrument& instrument, std::vector<Warning>& warnings) {
     const double bytes = evaluation_bytes(plan.configuration, instrument);
     const auto there = static_cast<double>(memory_of_host());
@@ -177,6 +197,7 @@ double evaluation_bytes(const Configuration& configuration, const optics::Instru
 std::vector<Warning> plan_warnings(const Configuration& configuration, const optics::Instrument& instrument,
                                    const Relief& relief) {
     std::vector<Warning> warnings;
+    warn_of_host_images(configuration, warnings);
     if (!configuration.scan) {
         return warnings;
     }

@@ -6,6 +6,7 @@
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/scene/host_memory.hpp"
 #include "trace/device/wave_memory.hpp"
+#include "trace/interface/backward_image.hpp"
 
 #include <fmt/format.h>
 
@@ -65,19 +66,33 @@ std::optional<Warning> warning_of_host(const std::vector<optics::WaveOptions>& o
 
 } // namespace
 
-void refuse_beyond_host(const optics::WaveOptions& options, const optics::Instrument& instrument) {
-    constexpr int fewest_cells = 8; // the least number that is chosen where none is given
-    const trace::WaveSizes least = {.cells = options.cells > 0 ? options.cells : fewest_cells,
-                                    .parts = optics::parts_of(options, instrument),
-                                    .tiles = 1,
-                                    .pixels = instrument.detector_pixels()};
-    const std::uint64_t memory = trace::wave_memory_of_host(least, 1).light;
+std::uint64_t counts_of_host(const trace::TraceOptions& options, ImageSize pixels) {
+    const std::uint64_t counts = options.estimator == trace::Estimator::backward
+                                     ? trace::backward_plan(options.rays, pixels).randomisations
+                                     : static_cast<std::uint64_t>(core_count()) * (options.directed_scatter ? 2 : 1);
+    constexpr std::uint64_t light_and_error = 2;
+    return (counts + light_and_error) * pixels.count() * sizeof(std::uint64_t);
+}
+
+void refuse_beyond_host(const trace::TraceOptions& options, const optics::Instrument& instrument) {
+    std::uint64_t memory = counts_of_host(options, instrument.detector_pixels());
+    if (const auto& waves = options.waves) {
+        constexpr int fewest_cells = 8; // the least number that is chosen where none is given
+        const trace::WaveSizes least = {.cells = waves->cells > 0 ? waves->cells : fewest_cells,
+                                        .parts = optics::parts_of(*waves, instrument),
+                                        .tiles = 1,
+                                        .pixels = instrument.detector_pixels()};
+        memory += trace::wave_memory_of_host(least, 1).light;
+    }
     if (const std::uint64_t there = memory_of_host(); memory > there) {
-        throw InputError({.where = {},
-                          .key = "detector.pixels",
-                          .found = fmt::format("images of waves that take {} of memory", bytes_text(memory)),
-                          .expected = fmt::format("at most {}, the memory of this machine", bytes_text(there)),
-                          .remedy = "Take fewer pixels, fewer diffraction.cells or diffraction.model = \"none\"."});
+        throw InputError(
+            {.where = {},
+             .key = "detector.pixels",
+             .found =
+                 fmt::format("images {}that take {} of memory", options.waves ? "of waves " : "", bytes_text(memory)),
+             .expected = fmt::format("at most {}, the memory of this machine", bytes_text(there)),
+             .remedy = options.waves ? "Take fewer pixels, fewer diffraction.cells or diffraction.model = \"none\"."
+                                     : "Take fewer pixels, or another device (trace.device)."});
     }
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 #include "core/messages/warning.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "vulkan/device.hpp"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,12 @@ std::vector<Warning> wave_warnings_of(const vulkan::DeviceReport& device, const 
 // device. The device is not looked for where the images are so small that every device holds them.
 std::vector<Warning> wave_warnings_of_device(const Configuration& configuration, int cells, int tiles);
 
-// Throws InputError where light sorted for waves exceeds this machine's memory, for traces in double on its processor.
-void refuse_beyond_host(const optics::WaveOptions& options, const optics::Instrument& instrument);
+// The memory (bytes) of an image that this machine's processors trace in double: a count a pixel for each of them, or
+// for each randomisation backward. Light sorted for waves comes on top.
+std::uint64_t counts_of_host(const trace::TraceOptions& options, ImageSize pixels);
+
+// Throws InputError where an image that this machine's processors trace in double, and light sorted for waves, exceed
+// its memory: the system would end the program without a word.
+void refuse_beyond_host(const trace::TraceOptions& options, const optics::Instrument& instrument);
 
 } // namespace vkfv::measurement

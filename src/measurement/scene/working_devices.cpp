@@ -52,9 +52,7 @@ std::unique_ptr<trace::Tracer> WorkingDevices::make_tracer(const optics::Instrum
         of_member.device = members_[place].selector;
         of_member.batch_divisor = members_[place].batch_divisor;
         if (of_member.device == "host") {
-            if (of_member.waves) {
-                refuse_beyond_host(*of_member.waves, instrument);
-            }
+            refuse_beyond_host(of_member, instrument);
             return trace::make_host_tracer(instrument, specimen, of_member);
         }
         try {

@@ -36,7 +36,10 @@ struct Forecast {
     std::uint64_t disk = 0;
     std::uint64_t disk_there = 0;
 
-    bool fits() const { return disk <= disk_there && host_memory <= host_memory_there; }
+    bool fits() const {
+        return disk <= disk_there && host_memory <= host_memory_there &&
+               (device_memory_there == 0 || device_memory <= device_memory_there);
+    }
 };
 
 // Traces the probe. Throws InputError, DeviceError, RunError.

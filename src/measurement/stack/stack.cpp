@@ -1,5 +1,6 @@
 #include "measurement/stack/stack.hpp"
 
+#include "core/messages/safe_text.hpp"
 #include "core/messages/stages.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/scene/working_devices.hpp"
@@ -36,7 +37,7 @@ std::string summary(const ShardResult& result) {
     const auto& [shard, traced, folder] = result;
     return fmt::format("shard {} of {}: {} images traced, {} kept from before, in {}\n"
                        "vkfv merge puts the shards together when all are there\n",
-                       shard.index + 1, shard.count, traced.traced, traced.kept, folder.string());
+                       shard.index + 1, shard.count, traced.traced, traced.kept, safe_line(folder.string()));
 }
 
 nlohmann::ordered_json shard_json(const ShardResult& result) {
@@ -59,7 +60,7 @@ std::string summary(const StackResult& stack) {
                                                : "",
                         stack.evaluation.seconds);
     }
-    return text + fmt::format("results in {}\n", stack.folder.string());
+    return text + fmt::format("results in {}\n", safe_line(stack.folder.string()));
 }
 
 } // namespace vkfv::measurement

@@ -3,11 +3,16 @@
 #include "core/messages/error.hpp"
 #include "core/messages/stages.hpp"
 #include "core/threads/parallel_list.hpp"
+#include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/disk_space.hpp"
+#include "measurement/scene/host_memory.hpp"
+#include "vulkan/device.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <future>
 #include <sstream>
 #include <string_view>
@@ -78,6 +83,28 @@ struct Follower {
     }
 };
 
+// Refuses a stack whose evaluation exceeds the memory that holds it, before its images are traced. device: the
+// tracer's; null for the host.
+void require_memory(const StackScene& scene, const vulkan::Device* device) {
+    const Configuration& configuration = scene.configuration;
+    const bool on_device =
+        device != nullptr &&
+        (configuration.evaluate_on == EvaluateOn::device ||
+         (configuration.evaluate_on == EvaluateOn::automatic && !vulkan::is_software(device->report())));
+    const double takes = evaluation_bytes(configuration, scene.instrument);
+    const std::uint64_t there = on_device ? device->report().memory_bytes : memory_of_host();
+    if (takes > static_cast<double>(there)) {
+        constexpr double most = 9e18; // bytes, the largest number that the text can hold
+        throw InputError({.where = {},
+                          .key = "detector.pixels",
+                          .found = fmt::format("an evaluation that takes {} of memory",
+                                               bytes_text(static_cast<std::uint64_t>(std::min(takes, most)))),
+                          .expected = fmt::format("at most {}, the memory of {}", bytes_text(there),
+                                                  on_device ? device->report().name : "this machine"),
+                          .remedy = "Take fewer pixels, or a smaller topography.smoothing_steps."});
+    }
+}
+
 } // namespace
 
 std::string image_key(const Configuration& configuration) {
@@ -107,6 +134,7 @@ StackResult StackRuns::trace_and_evaluate(const StackScene& scene, const Working
         tracer = make_tracer(devices, configuration, scene.instrument, scene.specimen);
     }
     const trace::TracerIdentity identity = tracer->identity();
+    require_memory(scene, tracer->device().get());
     enter_stage("folder of the stack");
     scan::ImageStore store(configuration.output_directory, scene.description(identity));
     require_space(store, results_bytes(configuration));

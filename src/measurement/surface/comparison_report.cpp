@@ -2,6 +2,8 @@
 
 #include "core/files/result_folder.hpp"
 #include "core/mathematics/units.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "measurement/surface/surface_report.hpp"
 #include "report/parameter_table.hpp"
 #include "report/topography_picture.hpp"
@@ -119,6 +121,7 @@ Json json_of(const topography::Comparison& comparison, const ComparisonRequest& 
         report["parameters"][row.named.key()] = {
             {"measured", row.measured.mean}, {"standard_error", row.measured.error}, {"true", row.truth}};
     }
+    report["std_direction"] = report::std_direction;
     report["compared_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     return report;
 }
@@ -142,7 +145,8 @@ std::string text_of(const topography::Comparison& comparison, const ComparisonRe
     const auto& measurements = comparison.measurements;
     for (std::size_t k = 0; k < measurements.size(); ++k) {
         const auto& shift = measurements[k].shift;
-        const auto where = measurements.size() > 1 ? " of " + request.measurements[k].string() : std::string();
+        const auto where =
+            measurements.size() > 1 ? " of " + safe_line(request.measurements[k].string()) : std::string();
         text += std::isnan(shift.x)
                     ? fmt::format("{:<22} not found{}\n", "lateral shift", where)
                     : fmt::format("{:<22} x {:+.4f} um, y {:+.4f} um (correlation {:.4f}){}\n", "lateral shift",
@@ -284,7 +288,7 @@ void write_comparison(const std::filesystem::path& folder, const ComparisonReque
                       const ComparisonResult& result) {
     const auto& comparison = result.comparison;
     ResultFolder results(folder);
-    results.write("compare.json", comparison_json(request, result).dump(2) + "\n");
+    results.write("compare.json", json_text(comparison_json(request, result)) + "\n");
     results.write("transfer.csv", transfer_csv(comparison));
     results.write("slope.csv", slope_csv(comparison));
     results.write("profile.csv", profile_csv(result.profile, result.pair.measured));

@@ -90,6 +90,7 @@ nlohmann::ordered_json surface_json(const SurfaceFigures& figures, const std::fi
     report["not_measured_points"] = figures.not_measured;
     report["treatment"] = report::treatment_json(figures.band);
     report["parameters"] = report::json_of(figures.parameters);
+    report["std_direction"] = report::std_direction;
     const auto& line = figures.line;
     report["profile"] = {{"start_um", {line.x_start * um_per_mm, line.y_start * um_per_mm}},
                          {"end_um", {line.x_end * um_per_mm, line.y_end * um_per_mm}}};
@@ -122,6 +123,7 @@ std::string surface_text(const SurfaceFigures& figures) {
     };
     text += "\nISO 25178-2\n";
     table(figures.parameters);
+    text += std::string(report::std_direction) + ".\n";
     if (const auto loss = report::slope_loss_text(figures.parameters); !loss.empty()) {
         text += loss + "\n";
     }

@@ -1,6 +1,7 @@
 #include "measurement/sweep/sweep.hpp"
 
 #include "core/files/result_folder.hpp"
+#include "core/messages/heartbeat.hpp"
 #include "measurement/sweep/sweep_page.hpp"
 #include "measurement/sweep/sweep_rows.hpp"
 
@@ -81,6 +82,7 @@ SweepResult run_sweep(const std::filesystem::path& file, const std::vector<TomlO
     if (sweep.stacks) {
         spdlog::info("{}", swept.plan());
     }
+    const CountedWork work(sweep.stacks ? swept.images() : static_cast<double>(list.size()));
     Surfaces surfaces;
     StackRuns runs; // also has the devices for images
     std::vector<SweepRow> rows;

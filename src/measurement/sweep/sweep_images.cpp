@@ -2,6 +2,8 @@
 
 #include "core/files/digest.hpp"
 #include "core/files/file.hpp"
+#include "core/messages/heartbeat.hpp"
+#include "core/messages/json_text.hpp"
 #include "images/image_file.hpp"
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"
@@ -81,6 +83,7 @@ SweepRow image_row(const Configuration& configuration, ResultFolder& results, co
     if (earlier.value("digest", "") == digest) {
         row.figures = earlier.at("figures");
         row.device = earlier.value("device", "");
+        leave_out_work(1);
     } else {
         const Exposure exposure =
             expose(configuration, runs.devices_of(configuration), instrument, surface.specimen, focal_height);
@@ -92,9 +95,9 @@ SweepRow image_row(const Configuration& configuration, ResultFolder& results, co
             results.write(file, bytes);
         }
         results.write(figures_name,
-                      Json{{"digest", digest}, {"device", row.device}, {"figures", row.figures}}.dump(2) + "\n");
+                      json_text(Json{{"digest", digest}, {"device", row.device}, {"figures", row.figures}}) + "\n");
         results.write_checksums();
-        scan::append_timing(results.path(), fmt::format("\"{}\"", name.string()), exposure.image.seconds,
+        scan::append_timing(results.path(), name.string(), exposure.image.seconds,
                             static_cast<double>(exposure.image.rays));
         spdlog::info("traced in {:.3g} s", exposure.image.seconds);
     }

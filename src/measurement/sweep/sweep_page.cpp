@@ -147,7 +147,7 @@ std::string sweep_page(const Sweep& sweep, const std::vector<SweepRow>& rows, co
         }
     }
     data["figures"] = names;
-    page.data("data", report::json_text(data));
+    page.data("data", report::page_json(data));
     page.section("matrix", "Combinations");
     page.part("sweep.html");
     page.section("figure", "The figure over the last parameter");

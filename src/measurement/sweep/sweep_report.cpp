@@ -1,5 +1,7 @@
 #include "measurement/sweep/sweep_report.hpp"
 
+#include "core/messages/json_text.hpp"
+#include "core/messages/safe_text.hpp"
 #include "report/chart.hpp"
 #include "report/contact_sheet.hpp"
 
@@ -37,25 +39,16 @@ std::string cell_text(const nlohmann::ordered_json& value) {
                ? (std::isfinite(value.get<double>()) ? fmt::format("{:.5g}", value.get<double>()) : "")
            : value.is_string() ? value.get<std::string>()
            : value.is_null()   ? ""
-                               : value.dump();
+                               : json_text(value, JsonLayout::one_line);
 }
 
-// The text as a cell of a CSV file (RFC 4180) or of a Markdown table.
-std::string escaped(const std::string& text, bool markdown) {
+// The text as a cell of a Markdown table.
+std::string markdown_cell(const std::string& text) {
     std::string result;
-    for (const char character : text) {
-        if (markdown && (character == '\n' || character == '\r')) {
-            result += ' ';
-            continue;
-        }
-        if (markdown && character == '|') {
-            result += '\\';
-        } else if (!markdown && character == '"') {
-            result += '"';
-        }
-        result += character;
+    for (const char character : safe_line(text)) {
+        result += character == '|' ? "\\|" : std::string(1, character);
     }
-    return !markdown && text.find_first_of(",\"\r\n") != std::string::npos ? '"' + result + '"' : result;
+    return result;
 }
 
 std::string table_text(const Sweep& sweep, const std::vector<SweepRow>& rows, bool markdown) {
@@ -71,7 +64,7 @@ std::string table_text(const Sweep& sweep, const std::vector<SweepRow>& rows, bo
     const auto line = [&](const std::vector<std::string>& cells) {
         std::string text = markdown ? "| " : "";
         for (std::size_t k = 0; k < cells.size(); ++k) {
-            text += (k == 0 ? "" : between) + escaped(cells[k], markdown);
+            text += (k == 0 ? "" : between) + (markdown ? markdown_cell(cells[k]) : csv_cell(cells[k]));
         }
         return text + (markdown ? " |\n" : "\n");
     };
@@ -116,7 +109,7 @@ std::string sweep_name(const Sweep& sweep, const std::vector<std::string>& value
         name += fmt::format("{}{}={}", k == 0 ? "" : ",", sweep.parameters[k].label, plain_text(values[k]));
     }
     std::ranges::replace(name, '/', '_');
-    return name;
+    return safe_line(name);
 }
 
 std::string sweep_csv(const Sweep& sweep, const std::vector<SweepRow>& rows) {
@@ -150,7 +143,7 @@ std::string sweep_json(const Sweep& sweep, const std::vector<SweepRow>& rows) {
                          {"repeats", sweep.repeats},
                          {"parameters", std::move(parameters)},
                          {"rows", std::move(records)}};
-    return object.dump(2) + "\n";
+    return json_text(object) + "\n";
 }
 
 std::string sweep_contact_sheet(const Sweep& sweep, const std::vector<SweepRow>& rows, const std::string& title) {

@@ -32,6 +32,9 @@ class SweptStacks {
     // light, and 20 of the same images".
     std::string plan() const;
 
+    // The number of images that are traced if none is there from an earlier run.
+    double images() const;
+
     // Measures the stacks of the next combination. The row tells how far their heights agree with each other, and their
     // mean figures. after_stack gets each stack when it is measured.
     SweepRow measure_next(Progress& progress, const std::function<void(const StackResult&)>& after_stack);
@@ -41,6 +44,7 @@ class SweptStacks {
         std::string images, light;
     };
     StackAmongOthers others_of(std::size_t stack) const;
+    bool is_first_of_light(std::size_t stack) const;
 
     std::vector<std::vector<Configuration>> rows_;
     std::vector<const Configuration*> stacks_; // of all rows

@@ -1,6 +1,7 @@
 #include "measurement/sweep/sweep_rows.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "core/messages/heartbeat.hpp"
 #include "report/declared_figures.hpp"
 
 #include <fmt/format.h>
@@ -106,6 +107,22 @@ std::string SweptStacks::plan() const {
         stacks_.size() - images.size());
 }
 
+bool SweptStacks::is_first_of_light(std::size_t stack) const {
+    const auto end = keys_.begin() + static_cast<std::ptrdiff_t>(stack);
+    return std::find_if(keys_.begin(), end, [&](const Keys& earlier) { return earlier.light == keys_[stack].light; }) ==
+           end;
+}
+
+double SweptStacks::images() const {
+    double images = 0;
+    for (std::size_t k = 0; k < stacks_.size(); ++k) {
+        if (is_first_of_light(k)) {
+            images += static_cast<double>(stacks_[k]->scan.value().positions().size());
+        }
+    }
+    return images;
+}
+
 StackAmongOthers SweptStacks::others_of(std::size_t stack) const {
     StackAmongOthers others;
     others.more = stack + 1 < stacks_.size();
@@ -131,7 +148,11 @@ SweepRow SweptStacks::measure_next(Progress& progress, const std::function<void(
     double rays_per_image = 0;
     SweepRow row;
     for (const auto& configuration : repeats) {
-        const auto stack = runs_.measure(configuration, progress, others_of(next_stack_++));
+        const std::size_t number = next_stack_++;
+        const auto stack = runs_.measure(configuration, progress, others_of(number));
+        if (is_first_of_light(number)) {
+            leave_out_work(stack.traced.kept);
+        }
         after_stack(stack);
         heights.push_back(as_written(stack.evaluation.topography.height.height));
         figures.push_back(figures_of(stack.evaluation.deviation.value()));

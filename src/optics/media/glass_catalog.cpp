@@ -228,7 +228,8 @@ std::optional<ModelGlass> glass_of_code(std::string_view name) {
         return std::nullopt;
     }
     const int code = std::stoi(digits);
-    return ModelGlass{.nd = 1 + code / 1000 / 1000.0, .vd = code % 1000 / 10.0};
+    const ModelGlass glass{.nd = 1 + code / 1000 / 1000.0, .vd = code % 1000 / 10.0};
+    return glass.nd > 1 && abbe_range.contains(glass.vd) ? std::optional(glass) : std::nullopt;
 }
 
 std::string remedy_for_unknown_glass(std::string_view name) {

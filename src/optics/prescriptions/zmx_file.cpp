@@ -35,8 +35,19 @@ constexpr std::string_view of_surfaces[] = {"TYPE", "CURV", "DISZ", "GLAS", "CON
 // Keywords of apertures that are not circular and of obscurations, which are refused.
 constexpr std::string_view other_apertures[] = {"SQAP", "ELAP", "USAP", "OBSC", "SQOB", "ELOB", "USOB", "SPID"};
 
-// Operands of configurations that change a lens in a way that is not supported.
-constexpr std::string_view other_operands[] = {"PRAM", "IGNM", "TEMP", "PRES"};
+// Operands of configurations that change a lens in a way that is not supported: parameters and extra data of surfaces,
+// model glasses, ignored surfaces, the environment, apertures, and tilts and decentres before and behind a surface.
+constexpr std::string_view other_operands[] = {"PRAM", "PAR1", "PAR2", "PAR3", "PAR4", "PAR5", "PAR6", "PAR7",
+                                               "PAR8", "EDVA", "MIND", "MABB", "MDPG", "IGNM", "IGNR", "TEMP",
+                                               "PRES", "APMN", "APMX", "APTP", "APDX", "APDY", "CADX", "CADY",
+                                               "CATX", "CATY", "CATZ", "CBDX", "CBDY", "CBTX", "CBTY", "CBTZ"};
+
+// Operands of configurations that change no lens: fields, pupils, weights, titles, coatings, drawing, optimization.
+constexpr std::string_view operands_without_geometry[] = {
+    "MOFF", "AFOC", "APER", "SATP", "RAAM", "RELI", "FLTP", "FLWT", "XFIE", "YFIE", "FVAN", "FVCX", "FVCY",
+    "FVDX", "FVDY", "WLWT", "LTTL", "MCOM", "MCOT", "MCSD", "MCHI", "NCOM", "NCOT", "COTN", "COAT", "CWGT",
+    "GCRS", "GPEX", "GPEY", "GPJX", "GPJY", "GQPO", "GPIU", "HOLD", "MTFU", "OPDR", "PSCX", "PSCY", "PSHX",
+    "PSHY", "PSHZ", "PUPR", "PXAR", "PYAR", "SDRW", "SRTS", "SWCN", "UDAF", "BLNK"};
 
 bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
     return std::find(words.begin(), words.end(), word) != words.end();
@@ -66,7 +77,7 @@ class Reader {
             }
             begin = end + 1;
         }
-        if (!text.ends_with('\n') && !file_.surfaces.empty() && !behind_surfaces_) {
+        if (!text.ends_with('\n') && !file_.surfaces.empty() && !behind_surfaces_ && !after_operand_) {
             refuse(place(), file_.last_line, file_.last_line.rest, "a line that ends",
                    "The file looks cut off: copy it again.");
         }
@@ -96,7 +107,7 @@ class Reader {
 
     // The file position for messages: names the surface that is being read, if any.
     Place place() const {
-        const bool in_surface = !file_.surfaces.empty() && !behind_surfaces_;
+        const bool in_surface = !file_.surfaces.empty() && !behind_surfaces_ && !after_operand_;
         return {file_.path, in_surface ? std::optional(file_.surfaces.back().number) : std::nullopt};
     }
 
@@ -108,6 +119,7 @@ class Reader {
             if (file_.surfaces.empty() || behind_surfaces_) {
                 refuse(place(), line, line.rest, "this keyword inside a surface", "Move it below its SURF.");
             }
+            after_operand_ = false;
             if (is_one_of(keyword, of_surfaces)) {
                 take_property(file_.surfaces.back(), line);
             }
@@ -116,6 +128,9 @@ class Reader {
                    "Make the aperture circular in Zemax, or remove it.");
         } else if (keyword == "GCAT") {
             search_.order = line.words;
+            for (std::string& name : search_.order) {
+                std::erase(name, '"');
+            }
         } else if (keyword == "MODE") {
             if (line.rest != "SEQ") {
                 refuse(place(), line, line.rest, "the sequential mode, SEQ",
@@ -160,7 +175,7 @@ class Reader {
                                  return word == "\"\"" || as_number(word).has_value();
                              });
         const bool operand = numbers && !file_.surfaces.empty() && !line.indented;
-        behind_surfaces_ = behind_surfaces_ || operand;
+        after_operand_ = after_operand_ || operand;
         if (!operand) {
             unknown_.try_emplace(line.keyword, line.number);
         }
@@ -217,7 +232,8 @@ class Reader {
     void take_operand(const Line& line) {
         const Place lens{file_.path};
         if (is_one_of(line.keyword, other_operands)) {
-            refuse(lens, line, line.rest, "operands of configurations THIC, CRVT, CONN, GLSS, SDIA, WAVE and PRWV",
+            refuse(lens, line, line.rest,
+                   "operands of configurations THIC, CRVT, CONN, GLSS, SDIA, STPS, WAVE and PRWV",
                    "Make the wanted configuration the active one in Zemax, and save the lens.");
         }
         if (line.keyword == "WAVE") {
@@ -230,9 +246,23 @@ class Reader {
             file_.primary_line = line;
             return;
         }
+        if (is_one_of(line.keyword, operands_without_geometry)) {
+            return;
+        }
+        if (line.keyword == "STPS") {
+            const int stop = integer_at(lens, line, 2, 0, static_cast<int>(file_.surfaces.size()) - 1);
+            for (Surface& surface : file_.surfaces) {
+                surface.stop = surface.number == stop;
+                surface.stop_line = line;
+            }
+            return;
+        }
         constexpr std::string_view of_a_surface[] = {"THIC", "CRVT", "CONN", "GLSS", "SDIA"};
         if (!is_one_of(line.keyword, of_a_surface)) {
-            return; // fields, apertures and titles change no lens
+            spdlog::warn("{}:{}: the operand {} of configuration {} is not known, and is passed over. Check that it "
+                         "does not change the lens",
+                         file_.path.string(), line.number, line.keyword.substr(0, 20), *configuration_);
+            return;
         }
         Surface& surface = file_.surfaces[static_cast<std::size_t>(
             integer_at(lens, line, 0, 0, static_cast<int>(file_.surfaces.size()) - 1))];
@@ -297,6 +327,7 @@ class Reader {
                    fmt::format("surface {}, before everything else behind the surfaces", file_.surfaces.size()),
                    "Number the surfaces from 0 without a gap.");
         }
+        after_operand_ = false;
         file_.surfaces.emplace_back();
         file_.surfaces.back().number = static_cast<int>(file_.surfaces.size()) - 1;
         file_.surfaces.back().line = line;
@@ -385,7 +416,8 @@ class Reader {
     }
 
     File file_;
-    bool behind_surfaces_ = false;
+    bool behind_surfaces_ = false;     // behind MNUM
+    bool after_operand_ = false;       // after a line that is probably an operand of the merit function
     std::optional<int> configuration_; // the requested configuration
     int configurations_ = 1;
     int active_ = 1;

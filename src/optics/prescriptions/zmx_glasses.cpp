@@ -5,18 +5,26 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <optional>
+#include <string>
 
 namespace vkfv::optics::zmx {
 
 namespace {
+
+// The number in a word of a line GLAS, into which some programs write decimal commas.
+std::optional<double> number_in_glass(std::string word) {
+    std::ranges::replace(word, ',', '.');
+    return as_number(word);
+}
 
 // The nd and vd stated behind the name of a glass. Zemax writes 1.5 and 40 where it knows neither.
 std::optional<ModelGlass> stated_in(const Line& line) {
     if (line.words.size() < 5) {
         return std::nullopt;
     }
-    const auto nd = as_number(line.words[3]), vd = as_number(line.words[4]);
+    const auto nd = number_in_glass(line.words[3]), vd = number_in_glass(line.words[4]);
     if (!nd || !vd || !index_range.contains(*nd) || *nd == 1 || !abbe_range.contains(*vd) ||
         (*nd == 1.5 && *vd == 40)) {
         return std::nullopt;
@@ -35,14 +43,18 @@ Medium Glasses::medium_of(const Place& place, const Line& line, const GlassSearc
         return Medium::air();
     }
     if (name == "___BLANK") {
-        const double nd = number_at(place, line, 3, index_range);
-        const double vd = number_at(place, line, 4);
+        Line numbers = line;
+        for (std::string& word : numbers.words) {
+            std::ranges::replace(word, ',', '.');
+        }
+        const double nd = number_at(place, numbers, 3, index_range);
+        const double vd = number_at(place, numbers, 4);
         if (vd != 0 && !abbe_range.contains(vd)) {
             refuse(place, line, line.rest,
                    fmt::format("as value 5 an Abbe number {}, or 0 for no dispersion", abbe_range.to_string()),
                    "Correct the number; decimals take a point.");
         }
-        if (line.words.size() > 5 && number_at(place, line, 5) != 0) {
+        if (numbers.words.size() > 5 && number_at(place, numbers, 5) != 0) {
             refuse(place, line, line.rest, "a model glass without a deviation of its partial dispersion",
                    "Set the deviation to 0, or name a glass of a catalogue.");
         }
