@@ -239,6 +239,7 @@ void StackEvaluator::begin(const Channels& first) {
     plan.peak = static_cast<int>(options_.peak);
     plan.peak_range = options_.peak_range_steps;
     probes_.emplace(columns_, rows_, measure_, window_);
+    brightness_.emplace(columns_, rows_, options_.window_px);
     if (const int wide = wide_window(options_.window_px, columns_, rows_); wide > 0 && options_.most_rival < 1)
         wide_.emplace(columns_, rows_, measure_, FocusWindow(wide, options_.window_shape), wide_places_a_side);
     for (const int row : curve_grid_.rows_of(rows_))
@@ -264,6 +265,7 @@ void StackEvaluator::add(Channels image, double z, std::optional<double> reading
         for (float& value : channel.values)
             value *= scale_;
     probes_->add(image);
+    brightness_->add(image);
     if (wide_)
         wide_->add(image);
     planes_->take(static_cast<int>(z_.size()), std::move(image));
@@ -538,13 +540,27 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         height_uncertainty(result.height.height, result.height_noise, options_.window_px, options_.window_shape,
                            grain_correlation(result.all_in_focus, measure_, window_));
     const HiddenLevels levels(levels_of_probes.get(), result.height.height, step, window_.radius());
+    Grid<double> in_steps = result.height.height;
+    for (double& height : in_steps.values) {
+        height = (height - z_.front()) / step;
+    }
+    // The average of the images makes the curves wider before their brightness is divided by.
+    result.brightness_pull =
+        brightness_->pull(in_steps, std::hypot(figures.curve_width_steps, figures.smoothing_steps), step_of_heights);
+    double measured_pixels = 0;
     for (int row = 0; row < rows_; ++row) {
         for (int column = 0; column < columns_; ++column) {
+            const double pull = result.brightness_pull.at(column, row);
             double& uncertainty = result.height_uncertainty(column, row);
             uncertainty = std::sqrt(uncertainty * uncertainty + std::pow(end_uncertainty(column, row), 2) +
-                                    levels.variance(column, row));
+                                    levels.variance(column, row) + pull * pull);
+            if (std::isfinite(result.height.height(column, row))) {
+                measured_pixels += 1;
+                figures.brightness_pull += pull * pull;
+            }
         }
     }
+    figures.brightness_pull = measured_pixels > 0 ? std::sqrt(figures.brightness_pull / measured_pixels) : 0;
     figures.hidden_relief = levels.mean_deviation();
     figures.image_noise = relative_noise(brightness, noise_model);
     figures.noise_correlation = correlation;

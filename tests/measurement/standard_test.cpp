@@ -1,5 +1,6 @@
 #include "measurement/surface/standard.hpp"
 
+#include "measurement/evaluation/brightness_warnings.hpp"
 #include "measurement/surface/surface_measurement.hpp"
 #include "surface_files/surface_file.hpp"
 
@@ -37,6 +38,39 @@ TEST(StandardDimensions, TellNominalTrueAndMeasuredInTheirUnit) {
     EXPECT_NEAR(json[0]["error"].get<double>(), 0.15, 1e-9);
     EXPECT_EQ(json[0]["profiles"], 40);
     EXPECT_NE(dimensions_text(found).find("5.2 um"), std::string::npos);
+}
+
+// Upper levels and ground each come nearer to the mean by the uncertainty of a height. A level map has nothing to lose.
+TEST(StandardDimensions, AreUncertainByBrightnessAsTheirHeightsAre) {
+    const topography::BrightnessPull pull{.side = 160, .blocks = Grid<double>(1, 1, 0.0002)};
+    const auto found = standard_dimensions(groove, groove_of(0.0052), groove_of(0.00505), &pull);
+    const auto json = json_of(found);
+    EXPECT_NEAR(json[0]["brightness_uncertainty"].get<double>(), 0.4, 1e-9);
+    EXPECT_NEAR(json[0]["measured"].get<double>(), 5.2, 1e-9);
+    EXPECT_TRUE(found[0].is_uncertain_by_brightness());
+    EXPECT_NE(dimensions_text(found).find("(+- 0.4 by brightness that changes with focus)"), std::string::npos);
+    const topography::BrightnessPull none{.side = 160, .blocks = Grid<double>(1, 1)};
+    const auto sure = standard_dimensions(groove, groove_of(0.0052), groove_of(0.00505), &none);
+    EXPECT_EQ(sure[0].brightness_uncertainty, 0);
+    EXPECT_FALSE(sure[0].is_uncertain_by_brightness());
+    const auto unknown = standard_dimensions(groove, groove_of(0.0052), groove_of(0.00505));
+    EXPECT_TRUE(json_of(unknown)[0]["brightness_uncertainty"].is_null());
+    EXPECT_FALSE(unknown[0].is_uncertain_by_brightness());
+    EXPECT_EQ(dimensions_text(unknown).find("brightness"), std::string::npos);
+}
+
+TEST(StandardDimensions, ThoseThatBrightnessMakesUncertainAreWarnedOf) {
+    Evaluation evaluation;
+    EXPECT_TRUE(warnings_of_brightness(evaluation).empty());
+    evaluation.dimensions = {{.measured = {.name = "amplitude", .rule = {}, .value = 0.0038, .standard_error = 2e-5},
+                              .brightness_uncertainty = 2.1e-4},
+                             {.measured = {.name = "period", .rule = {}, .value = 0.04, .standard_error = 2e-5},
+                              .brightness_uncertainty = 3e-5},
+                             {.measured = {.name = "mean", .rule = {}, .value = 0.04, .standard_error = 2e-5}}};
+    const auto warnings = warnings_of_brightness(evaluation);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].code, "brightness-changes-with-focus");
+    EXPECT_NE(warnings[0].sentence.find("(amplitude, 0.21 um)"), std::string::npos) << warnings[0].sentence;
 }
 
 TEST(StandardDimensions, WhatWasNotMeasuredIsNull) {

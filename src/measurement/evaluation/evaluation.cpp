@@ -302,7 +302,8 @@ Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& ban
             evaluation_.filtered = topography::compared_pair(measured, truth, band);
         }
         if (feature) {
-            evaluation_.dimensions = standard_dimensions(*feature, measured, known.undistorted);
+            evaluation_.dimensions =
+                standard_dimensions(*feature, measured, known.undistorted, &evaluation_.topography.brightness_pull);
             if (errors.hidden_uncertainty > 0) {
                 for (auto& dimension : evaluation_.dimensions) {
                     dimension.measured.standard_error = surface::undefined;

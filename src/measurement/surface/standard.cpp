@@ -4,11 +4,39 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace vkfv::measurement {
 
 using dimensions::Dimension;
+
+namespace {
+
+// The map with every height moved towards the mean height by its own uncertainty, but no further than to it: the errors
+// that brightness makes are alike where slope and curvature are, and those of tops and bottoms are opposite.
+surface::HeightMap flattened(const surface::HeightMap& map, const topography::BrightnessPull& pull) {
+    double sum = 0, count = 0;
+    for (const double height : map.height.values) {
+        if (std::isfinite(height)) {
+            sum += height;
+            count += 1;
+        }
+    }
+    const double mean = count > 0 ? sum / count : 0;
+    surface::HeightMap result = map;
+    for (int row = 0; row < map.rows(); ++row) {
+        for (int column = 0; column < map.columns(); ++column) {
+            double& height = result.height(column, row);
+            const double off = height - mean;
+            height -= std::copysign(std::min(std::abs(off), pull.at(column, row)), off);
+        }
+    }
+    return result;
+}
+
+} // namespace
 
 StandardDimension::Row StandardDimension::in_unit() const {
     using enum Dimension::Unit;
@@ -24,17 +52,26 @@ StandardDimension::Row StandardDimension::in_unit() const {
             .error = (measured.value - truth) * factor,
             .standard_deviation = measured.standard_deviation * factor,
             .standard_error = measured.standard_error * factor,
+            .brightness_uncertainty = brightness_uncertainty * factor,
             .profiles = measured.profiles};
+}
+
+bool StandardDimension::is_uncertain_by_brightness() const {
+    return brightness_uncertainty > measured.standard_error;
 }
 
 std::vector<StandardDimension> standard_dimensions(const dimensions::Feature& feature,
                                                    const surface::HeightMap& measured,
-                                                   const std::optional<surface::HeightMap>& truth) {
+                                                   const std::optional<surface::HeightMap>& truth,
+                                                   const topography::BrightnessPull* pull) {
     const auto of_truth = truth ? dimensions::evaluate(*truth, feature) : std::vector<Dimension>();
+    const auto moved = pull ? dimensions::evaluate(flattened(measured, *pull), feature) : std::vector<Dimension>();
     std::vector<StandardDimension> result;
     for (auto& one : dimensions::evaluate(measured, feature)) {
-        const double true_value = truth ? of_truth.at(result.size()).value : surface::undefined;
-        result.push_back({.measured = std::move(one), .truth = true_value});
+        const std::size_t at = result.size();
+        const double true_value = truth ? of_truth.at(at).value : surface::undefined;
+        const double by_brightness = pull ? std::abs(moved.at(at).value - one.value) : surface::undefined;
+        result.push_back({.measured = std::move(one), .truth = true_value, .brightness_uncertainty = by_brightness});
     }
     return result;
 }
@@ -53,6 +90,7 @@ nlohmann::ordered_json json_of(const std::vector<StandardDimension>& dimensions)
                         {"error", row.error},
                         {"standard_deviation", row.standard_deviation},
                         {"standard_error", row.standard_error},
+                        {"brightness_uncertainty", row.brightness_uncertainty},
                         {"profiles", row.profiles}});
     }
     return list;
@@ -77,6 +115,9 @@ std::string dimensions_text(const std::vector<StandardDimension>& dimensions) {
         text += fmt::format("{:.6g}{}", row.measured, unit);
         if (std::isfinite(row.standard_error)) {
             text += fmt::format(" +- {:.2g}", row.standard_error);
+        }
+        if (one.is_uncertain_by_brightness()) {
+            text += fmt::format(" (+- {:.2g} by brightness that changes with focus)", row.brightness_uncertainty);
         }
         if (std::isfinite(row.nominal)) {
             text += fmt::format(", nominal {:.6g} (deviation {:+.2g})", row.nominal, row.deviation);
