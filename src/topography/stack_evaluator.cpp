@@ -239,6 +239,7 @@ void StackEvaluator::begin(const Channels& first) {
     plan.peak = static_cast<int>(options_.peak);
     plan.peak_range = options_.peak_range_steps;
     probes_.emplace(columns_, rows_, measure_, window_);
+    brightness_.emplace(columns_, rows_, options_.window_px);
     if (const int wide = wide_window(options_.window_px, columns_, rows_); wide > 0 && options_.most_rival < 1)
         wide_.emplace(columns_, rows_, measure_, FocusWindow(wide, options_.window_shape), wide_places_a_side);
     for (const int row : curve_grid_.rows_of(rows_))
@@ -264,6 +265,7 @@ void StackEvaluator::add(Channels image, double z, std::optional<double> reading
         for (float& value : channel.values)
             value *= scale_;
     probes_->add(image);
+    brightness_->add(image);
     if (wide_)
         wide_->add(image);
     planes_->take(static_cast<int>(z_.size()), std::move(image));
@@ -514,6 +516,18 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
             end_uncertainty.values[pixel] = step_of_heights * (by_width.place(found, width + wider) - place);
         }
     }
+    // The average of the images moves maxima where their brightness changes (brightness_pull.hpp).
+    Grid<double> slopes = result.height.height;
+    for (double& height : slopes.values) {
+        height = (height - z_.front()) / step;
+    }
+    slopes = brightness_->slopes(slopes, figures.curve_width_steps);
+    const double averaged_by = figures.smoothing_steps;
+    for (std::size_t pixel = 0; pixel < slopes.values.size(); ++pixel) {
+        if (const double slope = slopes.values[pixel]; std::isfinite(slope)) {
+            result.height.height.values[pixel] += step_of_heights * averaged_by * averaged_by * slope;
+        }
+    }
     const auto freed = std::async(std::launch::async, [planes = std::move(planes_)]() mutable { planes.reset(); });
     result.curves = curves_of(stack, of_curves, height_at);
     for (std::size_t point = 0; point < curve_pixels_.size() && point < result.curves.peaks.size(); ++point) {
@@ -538,13 +552,21 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         height_uncertainty(result.height.height, result.height_noise, options_.window_px, options_.window_shape,
                            grain_correlation(result.all_in_focus, measure_, window_));
     const HiddenLevels levels(levels_of_probes.get(), result.height.height, step, window_.radius());
+    result.brightness_pull = brightness_->pull(slopes, figures.curve_width_steps, step_of_heights);
+    double measured_pixels = 0;
     for (int row = 0; row < rows_; ++row) {
         for (int column = 0; column < columns_; ++column) {
+            const double pull = result.brightness_pull.at(column, row);
             double& uncertainty = result.height_uncertainty(column, row);
             uncertainty = std::sqrt(uncertainty * uncertainty + std::pow(end_uncertainty(column, row), 2) +
-                                    levels.variance(column, row));
+                                    levels.variance(column, row) + pull * pull);
+            if (std::isfinite(result.height.height(column, row))) {
+                measured_pixels += 1;
+                figures.brightness_pull += pull * pull;
+            }
         }
     }
+    figures.brightness_pull = measured_pixels > 0 ? std::sqrt(figures.brightness_pull / measured_pixels) : 0;
     figures.hidden_relief = levels.mean_deviation();
     figures.image_noise = relative_noise(brightness, noise_model);
     figures.noise_correlation = correlation;

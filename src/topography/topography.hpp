@@ -38,6 +38,7 @@
 #include "topography/focus_probes.hpp"
 #include "topography/host_focus_planes.hpp"
 #include "topography/peak_method.hpp"
+#include "topography/uncertainty/brightness_pull.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -101,6 +102,7 @@ struct StackFigures {
     ChanceLimit limit_of_whole;           // limit that `whole` exceeds if anything is measured; none for few_images
     double image_noise = 0;               // standard deviation of a pixel over its brightness, at the mean brightness
     double hidden_relief = 0;             // mm, HiddenLevels::mean_deviation(): relief hidden within windows
+    double brightness_pull = 0;           // mm, root mean square of Topography::brightness_pull where measured
     NoiseCorrelation noise_correlation{}; // correlation of neighbouring pixels' noise, FocusProbes::noise_correlation()
 
     bool rivalled() const { return rivalled_share > 0.5; }
@@ -114,8 +116,11 @@ struct Topography {
     // Standard deviation of the height by the images' noise, mm; NaN: not measured.
     Grid<double> height_noise;
     // Standard uncertainty of the height from the disagreement of neighbouring windows, including noise
-    // (height_uncertainty.hpp), and from several levels within a window (hidden_levels.hpp), mm; NaN: not measured.
+    // (height_uncertainty.hpp), from several levels within a window (hidden_levels.hpp) and from brightness that
+    // changes with focus, mm; NaN: not measured.
     Grid<double> height_uncertainty;
+    // The part of height_uncertainty by brightness that changes with focus, mm.
+    BrightnessPull brightness_pull;
     // RMS distance of the curve from a Gaussian over the range around its maximum, in units of the maximum.
     Grid<double> fit_residual;
     // Number of local maxima, each the largest within the range around it, that stand at least half as high above the
@@ -180,10 +185,11 @@ class StackEvaluator {
     std::vector<double> energy_weights_;
     FocusPlanesMaker make_planes_;
     CurveGrid curve_grid_;
-    std::optional<FocusProbes> probes_;       // from the first image on
-    std::optional<FocusProbes> wide_;         // with a window several times as wide
-    std::unique_ptr<FocusPlanes> planes_;     // from the first image on
-    std::vector<std::uint32_t> curve_pixels_; // indices of the curve grid's pixels, ascending
+    std::optional<FocusProbes> probes_;            // from the first image on
+    std::optional<FocusProbes> wide_;              // with a window several times as wide
+    std::optional<BrightnessOfBlocks> brightness_; // from the first image on
+    std::unique_ptr<FocusPlanes> planes_;          // from the first image on
+    std::vector<std::uint32_t> curve_pixels_;      // indices of the curve grid's pixels, ascending
     int columns_ = 0;
     int rows_ = 0;
     std::size_t channels_ = 0;

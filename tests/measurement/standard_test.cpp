@@ -1,5 +1,7 @@
 #include "measurement/surface/standard.hpp"
 
+#include "core/mathematics/units.hpp"
+#include "measurement/evaluation/brightness_warnings.hpp"
 #include "measurement/surface/surface_measurement.hpp"
 #include "surface_files/surface_file.hpp"
 
@@ -37,6 +39,62 @@ TEST(StandardDimensions, TellNominalTrueAndMeasuredInTheirUnit) {
     EXPECT_NEAR(json[0]["error"].get<double>(), 0.15, 1e-9);
     EXPECT_EQ(json[0]["profiles"], 40);
     EXPECT_NE(dimensions_text(found).find("5.2 um"), std::string::npos);
+}
+
+const topography::FocusWindow window_of_groove(7, topography::WindowShape::box);
+
+// Upper levels and ground each come nearer to the mean by the uncertainty of a height.
+TEST(StandardDimensions, AreUncertainByBrightnessAsTheirHeightsAre) {
+    const topography::BrightnessPull pull{.side = 160, .blocks = Grid<double>(1, 1, 0.0002)};
+    const auto found = standard_dimensions(groove, groove_of(0.0052), groove_of(0.00505),
+                                           FocusEffects{.pull = &pull, .window = window_of_groove});
+    EXPECT_NEAR(json_of(found)[0]["brightness_uncertainty"].get<double>(), 0.4, 1e-9);
+    EXPECT_NEAR(json_of(found)[0]["measured"].get<double>(), 5.2, 1e-9);
+    EXPECT_NE(dimensions_text(found).find("+- 0.4 by brightness that changes with focus"), std::string::npos);
+    const topography::BrightnessPull none;
+    const auto sure = standard_dimensions(groove, groove_of(0.0052), groove_of(0.00505),
+                                          FocusEffects{.pull = &none, .window = window_of_groove});
+    EXPECT_EQ(sure[0].brightness_uncertainty, 0);
+    const auto unknown = standard_dimensions(groove, groove_of(0.0052), groove_of(0.00505));
+    EXPECT_TRUE(json_of(unknown)[0]["brightness_uncertainty"].is_null());
+    EXPECT_TRUE(json_of(unknown)[0]["window_uncertainty"].is_null());
+    EXPECT_EQ(dimensions_text(unknown).find("brightness"), std::string::npos);
+}
+
+// A window of 7 points leaves sin(7 x) / (7 sin(x)) of a wave, with x = pi / 40 for 40 points a period, and another one
+// as much again. The levels of a groove lie farther than a window from its walls.
+TEST(StandardDimensions, AreUncertainByWhatTheWindowAverages) {
+    const double x = pi / 40, left = std::sin(7 * x) / (7 * std::sin(x));
+    surface::HeightMap wave{
+        .height = Grid<double>(160, 40), .x0 = -0.0795, .y0 = -0.0195, .pitch_x = 0.001, .pitch_y = 0.001};
+    for (int row = 0; row < wave.rows(); ++row) {
+        for (int column = 0; column < wave.columns(); ++column) {
+            wave.height(column, row) = 0.004 * left * std::cos(2 * x * column);
+        }
+    }
+    wave.height(30, 20) = surface::undefined;
+    const topography::BrightnessPull none;
+    const FocusEffects effects{.pull = &none, .window = window_of_groove};
+    const auto found =
+        standard_dimensions(dimensions::Sinusoid{.frame = {}, .amplitude = 0.004, .period = 0.04}, wave, {}, effects);
+    const double lost = 0.004 * (1 - left);
+    EXPECT_NEAR(found[0].measured.value, 0.004 - lost, 1e-6);
+    EXPECT_NEAR(found[0].window_uncertainty, lost, 0.1 * lost) << "the window's part is told";
+    EXPECT_NEAR(standard_dimensions(groove, groove_of(0.005), {}, effects)[0].window_uncertainty, 0, 1e-7);
+}
+
+TEST(StandardDimensions, ThoseThatBrightnessMakesUncertainAreWarnedOf) {
+    Evaluation evaluation;
+    EXPECT_TRUE(warnings_of_brightness(evaluation).empty());
+    evaluation.dimensions = {{.measured = {.name = "amplitude", .rule = {}, .value = 0.0038, .standard_error = 2e-5},
+                              .brightness_uncertainty = 2.1e-4},
+                             {.measured = {.name = "period", .rule = {}, .value = 0.04, .standard_error = 2e-5},
+                              .brightness_uncertainty = 3e-5},
+                             {.measured = {.name = "mean", .rule = {}, .value = 0.04, .standard_error = 2e-5}}};
+    const auto warnings = warnings_of_brightness(evaluation);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].code, "brightness-changes-with-focus");
+    EXPECT_NE(warnings[0].sentence.find("(amplitude, 0.21 um)"), std::string::npos) << warnings[0].sentence;
 }
 
 TEST(StandardDimensions, WhatWasNotMeasuredIsNull) {

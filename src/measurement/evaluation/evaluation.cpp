@@ -302,7 +302,10 @@ Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& ban
             evaluation_.filtered = topography::compared_pair(measured, truth, band);
         }
         if (feature) {
-            evaluation_.dimensions = standard_dimensions(*feature, measured, known.undistorted);
+            evaluation_.dimensions = standard_dimensions(
+                *feature, measured, known.undistorted,
+                FocusEffects{.pull = &evaluation_.topography.brightness_pull,
+                             .window = {evaluation_.options.window_px, evaluation_.options.window_shape}});
             if (errors.hidden_uncertainty > 0) {
                 for (auto& dimension : evaluation_.dimensions) {
                     dimension.measured.standard_error = surface::undefined;

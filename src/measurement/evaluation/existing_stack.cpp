@@ -1,5 +1,6 @@
 #include "measurement/evaluation/existing_stack.hpp"
 
+#include "measurement/evaluation/brightness_warnings.hpp"
 #include "measurement/evaluation/noise_warnings.hpp"
 #include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/assembly.hpp"
@@ -265,9 +266,10 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     }
     auto evaluated = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, errors,
                                        specimen::feature_of(configuration.specimen->shape));
-    const auto of_noise = warnings_of_noise(configuration, evaluated);
-    log_warnings(of_noise);
-    append(warnings, of_noise);
+    auto found = warnings_of_noise(configuration, evaluated);
+    append(found, warnings_of_brightness(evaluated));
+    log_warnings(found);
+    append(warnings, found);
     return {.evaluation = std::move(evaluated),
             .warnings = std::move(warnings),
             .origin = std::move(origin),

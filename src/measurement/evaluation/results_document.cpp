@@ -98,7 +98,8 @@ nlohmann::ordered_json figures_of_curves(const Evaluation& evaluation) {
                          {"noise_correlation", {whole.noise_correlation(1, 0), whole.noise_correlation(0, 1)}},
                          {"height_noise", evaluation.height_noise},
                          {"height_uncertainty", evaluation.height_uncertainty},
-                         {"hidden_relief", whole.hidden_relief}};
+                         {"hidden_relief", whole.hidden_relief},
+                         {"brightness_pull", whole.brightness_pull}};
     figures["focus_curves"] = places_json(evaluation.topography.curves, evaluation.topography.height.rows());
     figures["points"] = point_counts(evaluation.topography.state);
     return figures;

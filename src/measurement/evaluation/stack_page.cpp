@@ -95,7 +95,7 @@ void add_deviations(report::Page& page, const StackPage& content) {
 
 void add_dimensions(report::Page& page, const char* caption, const std::vector<StandardDimension>& dimensions) {
     Rows rows{{"dimension", "rule", "unit", "nominal", "true", "measured", "measured − nominal", "measured − true",
-               "standard deviation"}};
+               "standard deviation", "uncertainty by brightness", "uncertainty by the window"}};
     for (const auto& one : dimensions) {
         const auto row = one.in_unit();
         // Nominal and true values have no uncertainty, so differences from them have the uncertainty of the measured
@@ -109,7 +109,9 @@ void add_dimensions(report::Page& page, const char* caption, const std::vector<S
         };
         rows.push_back({row.name, row.rule, report::reader_unit(row.unit), report::reader_number(row.nominal, exact),
                         report::reader_number(row.truth, exact), measured(row.measured), measured(row.deviation),
-                        measured(row.error), report::reader_number(row.standard_deviation, spread)});
+                        measured(row.error), report::reader_number(row.standard_deviation, spread),
+                        report::reader_number(row.brightness_uncertainty, spread),
+                        report::reader_number(row.window_uncertainty, spread)});
     }
     page.table(caption, rows);
 }

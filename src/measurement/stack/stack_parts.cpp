@@ -4,6 +4,7 @@
 #include "core/mathematics/units.hpp"
 #include "core/messages/stages.hpp"
 #include "core/threads/background.hpp"
+#include "measurement/evaluation/brightness_warnings.hpp"
 #include "measurement/evaluation/noise_warnings.hpp"
 #include "measurement/image/camera_images.hpp"
 #include "measurement/image/exposure.hpp"
@@ -138,6 +139,7 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
         append(warnings, warnings_of_images(configuration, *camera));
     }
     append(warnings, warnings_of_noise(configuration, stack.evaluation));
+    append(warnings, warnings_of_brightness(stack.evaluation));
     log_warnings(warnings);
     stack.warnings = scene_.warnings;
     append(stack.warnings, warnings);
