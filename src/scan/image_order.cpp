@@ -28,15 +28,44 @@ std::string_view take_number(std::string_view& text) {
     return number;
 }
 
+// Length in mm of the unit at the beginning of a text, after a space or '_' or nothing; 0: there is no unit.
+double unit_at(std::string_view text) {
+    text.remove_prefix(!text.empty() && (text.front() == ' ' || text.front() == '_') ? 1 : 0);
+    for (const auto& [unit, length] : std::initializer_list<std::pair<std::string_view, double>>{{"um", 1e-3},
+                                                                                                 {"\u00b5m", 1e-3},
+                                                                                                 {"\u03bcm", 1e-3},
+                                                                                                 {"microns", 1e-3},
+                                                                                                 {"micron", 1e-3},
+                                                                                                 {"nm", 1e-6},
+                                                                                                 {"mm", 1}}) {
+        if (text.starts_with(unit) &&
+            (text.size() == unit.size() || std::isalnum(static_cast<unsigned char>(text[unit.size()])) == 0)) {
+            return length;
+        }
+    }
+    return 0;
+}
+
 // A name split into texts and the numbers between them.
 struct Parts {
     std::vector<std::string> texts;   // one more than numbers
     std::vector<std::string> numbers; // "-5", "0.5", "007"
 };
 
-Parts parts_of(std::string_view name) {
+// The name with a hyphen for every minus sign of Unicode.
+std::string with_hyphens(std::string_view name) {
+    constexpr std::string_view minus = "\u2212";
+    std::string result(name);
+    for (std::size_t at = result.find(minus); at != std::string::npos; at = result.find(minus, at)) {
+        result.replace(at, minus.size(), "-");
+    }
+    return result;
+}
+
+Parts parts_of(std::string_view given) {
+    const std::string name = with_hyphens(given);
     Parts parts{.texts = {""}, .numbers = {}};
-    const auto digits_from = [name](std::size_t at) {
+    const auto digits_from = [&name](std::size_t at) {
         std::size_t end = at;
         while (end < name.size() && is_digit(name[end])) {
             ++end;
@@ -50,10 +79,18 @@ Parts parts_of(std::string_view name) {
             parts.texts.back() += name[at++];
             continue;
         }
-        if (end < name.size() && name[end] == '.' && digits_from(end + 1) > end + 1) {
-            end = digits_from(end + 1);
+        const std::size_t comma = end;
+        if (end < name.size() && (name[end] == '.' || name[end] == ',') && digits_from(end + 1) > end + 1) {
+            const std::size_t decimals_end = digits_from(end + 1);
+            // A comma separates decimals if a unit follows them, and numbers otherwise.
+            if (name[end] == '.' || unit_at(std::string_view(name).substr(decimals_end)) > 0) {
+                end = decimals_end;
+            }
         }
         parts.numbers.emplace_back(name.substr(at, end - at));
+        if (comma < end) {
+            parts.numbers.back()[comma - at] = '.';
+        }
         parts.texts.emplace_back();
         at = end;
     }
@@ -72,28 +109,46 @@ struct Numbers {
     std::string behind;
 };
 
-// Finds the number in which the names differ; none if they do not differ in exactly one number.
+// The places of the numbers in which these names, alike except for their numbers, differ.
+std::vector<std::size_t> differing_numbers(const std::vector<Parts>& alike) {
+    std::vector<std::size_t> differing;
+    for (std::size_t k = 0; k < alike.front().numbers.size(); ++k) {
+        if (std::ranges::any_of(alike,
+                                [&](const Parts& parts) { return parts.numbers[k] != alike.front().numbers[k]; })) {
+            differing.push_back(k);
+        }
+    }
+    return differing;
+}
+
+// True if a '-' after this text and before a number is its sign, though all numbers have one: '=' and brackets separate
+// already, and a length whose name has no other hyphen is a height.
+bool is_sign_after(const Parts& parts, std::size_t number) {
+    const std::string& before = parts.texts[number];
+    const bool separated = !before.empty() && std::string_view("=([").find(before.back()) != std::string_view::npos;
+    const bool other_hyphens =
+        std::ranges::any_of(parts.texts, [](const std::string& text) { return text.find('-') != std::string::npos; });
+    const auto hyphens = std::ranges::count_if(parts.numbers, [](const std::string& n) { return n.front() == '-'; });
+    return separated || (unit_at(parts.texts[number + 1]) > 0 && hyphens == 1 && !other_hyphens);
+}
+
+// Finds the number in which the names differ or, if they differ in several, the only one of these with a unit behind
+// it, as the height is beside a count (img_007_z-30um); none if there is no such number.
 std::optional<Numbers> numbers_of(const std::vector<std::string>& names) {
     std::vector<Parts> all;
     std::ranges::transform(names, std::back_inserter(all), parts_of);
-    std::optional<std::size_t> differs;
-    for (const Parts& parts : all) {
-        if (parts.texts != all.front().texts) {
-            return std::nullopt;
-        }
-        for (std::size_t k = 0; k < parts.numbers.size(); ++k) {
-            if (parts.numbers[k] != all.front().numbers[k]) {
-                if (differs && *differs != k) {
-                    return std::nullopt;
-                }
-                differs = k;
-            }
-        }
-    }
-    if (!differs) {
+    if (std::ranges::any_of(all, [&](const Parts& parts) { return parts.texts != all.front().texts; })) {
         return std::nullopt;
     }
-    const auto text = [&](const Parts& parts) -> const std::string& { return parts.numbers[*differs]; };
+    std::vector<std::size_t> differing = differing_numbers(all);
+    if (differing.size() > 1) {
+        std::erase_if(differing, [&](std::size_t k) { return !(unit_at(all.front().texts[k + 1]) > 0); });
+    }
+    if (differing.size() != 1) {
+        return std::nullopt;
+    }
+    const std::size_t differs = differing.front();
+    const auto text = [&](const Parts& parts) -> const std::string& { return parts.numbers[differs]; };
     // Numbers such as 1.9, 1.10 are counts, as in versions; decimals have no zero at their end unless all have as many
     // digits.
     const bool even = std::ranges::all_of(
@@ -101,8 +156,9 @@ std::optional<Numbers> numbers_of(const std::vector<std::string>& names) {
     const bool counts =
         !even && std::ranges::any_of(all, [&](const Parts& parts) { return decimals(text(parts)).ends_with('0'); });
     constexpr std::size_t exact_digits = 15; // digits that a double holds exactly
-    const bool separated = std::ranges::all_of(all, [&](const Parts& parts) { return text(parts).front() == '-'; });
-    Numbers numbers{.values = {}, .behind = all.front().texts[*differs + 1]};
+    const bool separated = std::ranges::all_of(all, [&](const Parts& parts) { return text(parts).front() == '-'; }) &&
+                           !is_sign_after(all.front(), differs);
+    Numbers numbers{.values = {}, .behind = all.front().texts[differs + 1]};
     for (const Parts& parts : all) {
         if (counts || text(parts).size() > exact_digits) {
             return std::nullopt;
@@ -111,19 +167,6 @@ std::optional<Numbers> numbers_of(const std::vector<std::string>& names) {
         numbers.values.push_back(separated ? -value : value);
     }
     return numbers;
-}
-
-// Length in mm of the unit at the beginning of a text, after a space or '_' or nothing; 0: there is no unit.
-double unit_at(std::string_view text) {
-    text.remove_prefix(!text.empty() && (text.front() == ' ' || text.front() == '_') ? 1 : 0);
-    for (const auto& [unit, length] : std::initializer_list<std::pair<std::string_view, double>>{
-             {"um", 1e-3}, {"\u00b5m", 1e-3}, {"\u03bcm", 1e-3}, {"nm", 1e-6}, {"mm", 1}}) {
-        if (text.starts_with(unit) &&
-            (text.size() == unit.size() || std::isalnum(static_cast<unsigned char>(text[unit.size()])) == 0)) {
-            return length;
-        }
-    }
-    return 0;
 }
 
 // The number of steps of each of the ascending values above the first; none if they have no common step. Tolerates
@@ -147,7 +190,10 @@ std::optional<std::vector<int>> steps_of(const std::vector<double>& values, doub
         single += multiple == 1 ? 1 : 0;
         steps.push_back(steps.back() + static_cast<int>(multiple));
     }
-    if (static_cast<double>(single) < share_of_a_series * static_cast<double>(differences.size())) {
+    // More images missing than there are means other series, or a camera's counter that began again.
+    const auto present = static_cast<int>(values.size());
+    if (static_cast<double>(single) < share_of_a_series * static_cast<double>(differences.size()) ||
+        steps.back() + 1 - present > present) {
         return std::nullopt;
     }
     step = (values.back() - values.front()) / steps.back();
@@ -251,14 +297,59 @@ std::vector<bool> of_one_series(const std::vector<std::string>& names) {
     return std::vector<bool>(names.size(), true);
 }
 
+namespace {
+
+// The first of each series among these names, alike except for their numbers, where one number counts the images and
+// the others the series (scan1_001, ..., scan2_001, ...): each series has three images or more, and two thirds of the
+// counts of the shortest are found in the first. Empty if there are not two series. A count that goes on beside
+// another number (a time after midnight) makes no series.
+std::vector<std::size_t> series_by_numbers(const std::vector<std::string>& names,
+                                           const std::vector<std::size_t>& places) {
+    std::vector<Parts> alike;
+    for (const std::size_t k : places) {
+        alike.push_back(parts_of(names[k]));
+    }
+    for (const std::size_t counting : differing_numbers(alike)) {
+        std::map<std::vector<std::string>, std::map<std::string, std::size_t>> series; // by the others; count, place
+        for (std::size_t k = 0; k < alike.size(); ++k) {
+            auto others = alike[k].numbers;
+            const std::string count = std::exchange(others[counting], "");
+            series[others].emplace(count, places[k]);
+        }
+        const auto& counts = series.begin()->second;
+        const bool all_alike = std::ranges::all_of(series, [&](const auto& one) {
+            const auto common =
+                std::ranges::count_if(one.second, [&](const auto& entry) { return counts.contains(entry.first); });
+            return one.second.size() >= least_of_a_series &&
+                   3 * static_cast<std::size_t>(common) >= 2 * std::min(one.second.size(), counts.size());
+        });
+        if (series.size() > 1 && all_alike) {
+            std::vector<std::size_t> first;
+            for (const auto& one : series) {
+                first.push_back(one.second.begin()->second);
+            }
+            return first;
+        }
+    }
+    return {};
+}
+
+} // namespace
+
 std::vector<std::size_t> several_series(const std::vector<std::string>& names) {
     std::vector<std::size_t> first;
     for (const auto& [texts, places] : alike_names(names)) {
+        if (places.size() < least_of_a_series || 3 * places.size() < names.size()) {
+            continue;
+        }
+        if (auto counted = series_by_numbers(names, places); !counted.empty()) {
+            return counted;
+        }
         std::vector<std::string> of_series;
         for (const std::size_t k : places) {
             of_series.push_back(names[k]);
         }
-        if (places.size() >= least_of_a_series && 3 * places.size() >= names.size() && numbers_of(of_series)) {
+        if (numbers_of(of_series)) {
             first.push_back(places.front());
         }
     }

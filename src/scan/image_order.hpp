@@ -27,10 +27,12 @@ struct ImageOrder {
     std::optional<double> first, step;
 };
 
-// The order of names (without their endings). Names that differ in exactly one number are ordered by it; it may have
-// decimals (z_0.5) and signs (z-5, z+5; a '-' before all of them only separates). If four of five steps between the
-// numbers are equal and the others whole multiples of them, heights follow the numbers; else equal steps are assumed,
-// which is a doubt. Other names are in natural order, which is a doubt too.
+// The order of names (without their endings). Names that differ in exactly one number are ordered by it, and those that
+// differ in several by the only one of these with a unit of length behind it. It may have decimals (z_0.5, z_0,5um) and
+// signs (z-5, z+5); a '-' before all of them only separates, unless it follows '=' or a bracket, or a unit is behind
+// the number and there is no other hyphen. If four of five steps between the numbers are equal and the others whole
+// multiples of them, and no more images are missing than there are, heights follow the numbers; else equal steps are
+// assumed, which is a doubt. Other names are in natural order, which is a doubt too.
 ImageOrder order_of_names(const std::vector<std::string>& names);
 
 // True for the names of one series: names that are alike except for their numbers and signs, if they are at least four
@@ -38,7 +40,8 @@ ImageOrder order_of_names(const std::vector<std::string>& names);
 std::vector<bool> of_one_series(const std::vector<std::string>& names);
 
 // The index of one name of each series in a folder that holds several (img_1 ... and aligned_img_1 ...): a series is at
-// least three names and a third of all that are alike except for one number. Empty if there are not two series.
+// least three names and a third of all that are alike except for one number. Also series that a number in their names
+// tells apart (scan1_001 ... and scan2_001 ...). Empty if there are not two series.
 std::vector<std::size_t> several_series(const std::vector<std::string>& names);
 
 } // namespace vkfv::scan

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <exception>
 #include <iterator>
 #include <map>
 #include <string>
@@ -21,8 +22,8 @@ namespace vkfv::scan {
 
 namespace {
 
-constexpr std::array extensions = {".tif", ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".jp2", ".j2k", ".webp",
-                                   ".exr", ".hdr",  ".pgm", ".ppm", ".pnm", ".pfm",  ".pbm", ".tga"};
+constexpr std::array extensions = {".tif",  ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".jpe", ".jfif", ".jp2", ".j2k",
+                                   ".webp", ".exr",  ".hdr", ".pgm", ".ppm", ".pnm",  ".pfm", ".pbm",  ".tga"};
 
 bool is_image(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
@@ -91,6 +92,29 @@ void leave_out(std::vector<std::filesystem::path>& files, const std::vector<bool
     files = std::move(rest);
 }
 
+// What each file states. Files that are no images are left out with a warning if at least four of five are.
+std::vector<images::ImageStatement> statements_of(std::vector<std::filesystem::path>& files,
+                                                  const std::filesystem::path& folder) {
+    std::vector<images::ImageStatement> statements;
+    std::vector<bool> kept;
+    std::exception_ptr first_refusal;
+    for (const auto& file : files) {
+        try {
+            statements.push_back(images::image_statement(file));
+            kept.push_back(true);
+        } catch (const InputError&) {
+            kept.push_back(false);
+            first_refusal = first_refusal ? first_refusal : std::current_exception();
+        }
+    }
+    if (first_refusal &&
+        static_cast<double>(statements.size()) < share_of_a_series * static_cast<double>(files.size())) {
+        std::rethrow_exception(first_refusal);
+    }
+    leave_out(files, kept, folder, "it cannot be read as an image");
+    return statements;
+}
+
 } // namespace
 
 ImageSeries::ImageSeries(const std::filesystem::path& path, const SeriesChoice& choice) {
@@ -130,14 +154,18 @@ void ImageSeries::take_folder(const std::filesystem::path& path) {
     std::ranges::sort(files); // the folder's own order is arbitrary
     leave_out(files, of_one_series(names_with_endings(files)), path, "its name is not like those of the others");
     if (const auto series = several_series(names_with_endings(files)); !series.empty()) {
+        constexpr std::size_t most_named = 3;
         std::vector<std::string> one_of_each;
-        std::ranges::transform(series, std::back_inserter(one_of_each),
-                               [&](std::size_t k) { return files[k].filename().string(); });
+        for (std::size_t k = 0; k < std::min(series.size(), most_named); ++k) {
+            one_of_each.push_back(files[series[k]].filename().string());
+        }
+        if (series.size() > most_named) {
+            one_of_each.push_back(fmt::format("{} others", series.size() - most_named));
+        }
         refuse_file(path, "", fmt::format("several series of images: those of {}", fmt::join(one_of_each, " and of ")),
                     "one series in a folder", "Move the images of the others to folders of their own.");
     }
-    std::vector<images::ImageStatement> statements;
-    std::ranges::transform(files, std::back_inserter(statements), images::image_statement);
+    const auto statements = statements_of(files, path);
     leave_out(files, of_one_size(statements), path, "it has another size or kind than the others");
     std::vector<std::string> names;
     std::ranges::transform(files, std::back_inserter(names), [](const auto& file) { return file.stem().string(); });

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -20,23 +21,41 @@ namespace vkfv::scan {
 
 namespace {
 
-// Length in mm of a unit by its name in ImageJ and OME; 0 if it is no length ("pixel", "reference frame").
+// Length in mm of a unit by its name in ImageJ and OME; 0 if it is no length ("pixel", "reference frame"). Words may
+// have capitals, symbols may not: "Mm" is no millimetre.
 double length_of(std::string_view unit) {
-    constexpr std::array<std::pair<std::string_view, double>, 20> units = {
+    constexpr std::array<std::pair<std::string_view, double>, 28> units = {
         {{"um", 1e-3},       {"\u00b5m", 1e-3},   {"\u03bcm", 1e-3},    {"\\u00B5m", 1e-3},
          {"micron", 1e-3},   {"microns", 1e-3},   {"micrometer", 1e-3}, {"micrometre", 1e-3},
          {"nm", 1e-6},       {"nanometer", 1e-6}, {"nanometre", 1e-6},  {"mm", 1},
          {"millimeter", 1},  {"millimetre", 1},   {"cm", 10},           {"centimeter", 10},
-         {"centimetre", 10}, {"m", 1000},         {"inch", 25.4},       {"in", 25.4}}};
-    const auto found = std::ranges::find(units, unit, &std::pair<std::string_view, double>::first);
+         {"centimetre", 10}, {"m", 1000},         {"meter", 1000},      {"metre", 1000},
+         {"inch", 25.4},     {"in", 25.4},        {"inches", 25.4},     {"ft", 304.8},
+         {"pm", 1e-9},       {"\u00c5", 1e-7},    {"\u212b", 1e-7},     {"km", 1e6}}};
+    constexpr std::size_t longest_symbol = 3;
+    std::string word(unit);
+    if (unit.size() > longest_symbol && unit.front() != '\\') {
+        std::ranges::transform(word, word.begin(), [](unsigned char c) { return c < 0x80 ? std::tolower(c) : c; });
+    }
+    const auto found = std::ranges::find(units, word, &std::pair<std::string_view, double>::first);
     if (found != units.end()) {
         return found->second;
     }
     return unit == "\xb5m" ? 1e-3 : 0; // the micro sign of Latin-1
 }
 
-// A finite number with a decimal point, whatever the locale.
-std::optional<double> number_in(std::string_view text) {
+// A finite number, with spaces around it or a plus sign before it or not, whatever the locale here is: programs write
+// the decimal comma of theirs. Commas between thousands are refused.
+std::optional<double> number_in(std::string_view given) {
+    const auto first = given.find_first_not_of(" \t");
+    if (first == std::string_view::npos) {
+        return std::nullopt;
+    }
+    std::string text(given.substr(first, given.find_last_not_of(" \t") + 1 - first));
+    text.erase(0, text.front() == '+' && text.size() > 1 && text[1] != '-' ? 1 : 0);
+    if (std::ranges::count(text, ',') == 1 && text.find('.') == std::string::npos) {
+        text[text.find(',')] = '.';
+    }
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc() && end == text.data() + text.size() && std::isfinite(value) ? std::optional(value)
@@ -151,7 +170,12 @@ StatedSeries by_imagej(const images::ImageStatement& statement, int pages, const
     const double along_x = by_tags > 0 ? by_tags : lines.contains("unit") ? unit_of("unit") : 0;
     const double along_y = by_tags > 0 ? by_tags : lines.contains("yunit") ? unit_of("yunit") : along_x;
     take_pitch(stated, statement, along_x, along_y);
-    if (const auto spacing = lines.contains("spacing") ? number_in(lines.at("spacing")) : std::nullopt) {
+    const auto spacing = lines.contains("spacing") ? number_in(lines.at("spacing")) : std::nullopt;
+    if (lines.contains("spacing") && !spacing) {
+        stated.doubts.push_back(
+            fmt::format("states a spacing of \"{}\", which is no number and is not used", lines.at("spacing").substr(0, 40)));
+    }
+    if (spacing) {
         const double unit = lines.contains("zunit")  ? unit_of("zunit")
                             : lines.contains("unit") ? unit_of("unit")
                                                      : by_tags;

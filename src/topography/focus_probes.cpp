@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
+#include <set>
+#include <utility>
 
 namespace vkfv::topography {
 namespace {
@@ -523,6 +526,7 @@ IndependentImages FocusProbes::independent_images(const std::vector<double>& nei
         std::mt19937_64 random(static_cast<std::uint64_t>(sample));
         const std::vector<int> places = random_order(static_cast<int>(probes_.size()), random());
         std::vector<Channels> patches;
+        std::set<std::pair<std::size_t, int>> taken; // a patch that is taken twice agrees with itself
         for (std::size_t k = 0; static_cast<int>(patches.size()) < images && k < 4 * places.size() + 4; ++k) {
             const auto place = static_cast<std::size_t>(places[k % places.size()]);
             const Probe& probe = probes_[place];
@@ -530,7 +534,11 @@ IndependentImages FocusProbes::independent_images(const std::vector<double>& nei
                 probe.columns != probes_.front().columns) {
                 continue;
             }
-            Channels patch = noise_patch(probe, quiet[place][random() % quiet[place].size()], contrast, scale);
+            const int image = quiet[place][random() % quiet[place].size()];
+            if (!taken.emplace(place, image).second) {
+                continue;
+            }
+            Channels patch = noise_patch(probe, image, contrast, scale);
             if (!patch.empty()) {
                 patches.push_back(std::move(patch));
             }
@@ -704,6 +712,94 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
     const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
     std::ranges::nth_element(shares, middle);
     return *middle;
+}
+
+std::vector<std::vector<double>> FocusProbes::patterns(const Probe& probe) const {
+    const std::size_t pixels = probe.pixels(), channels = static_cast<std::size_t>(channels_);
+    std::vector<std::vector<double>> all;
+    for (int image = 0; image < images_; ++image) {
+        std::vector<double>& pattern = all.emplace_back(pixels);
+        for (std::size_t k = 0; k < channels * pixels; ++k) {
+            pattern[k % pixels] += probe.values[static_cast<std::size_t>(image) * channels * pixels + k];
+        }
+        const double level = std::accumulate(pattern.begin(), pattern.end(), 0.0) / static_cast<double>(pixels);
+        for (double& value : pattern) {
+            value -= level;
+        }
+    }
+    std::vector<int> by_focus = images_in_order(images_);
+    std::ranges::sort(by_focus, {}, [&](int image) { return probe.singles[static_cast<std::size_t>(image)]; });
+    by_focus.resize(static_cast<std::size_t>(std::max(1, images_ / 3)));
+    std::vector<double> quiet(pixels);
+    for (const int image : by_focus) {
+        for (std::size_t k = 0; k < pixels; ++k) {
+            quiet[k] += all[static_cast<std::size_t>(image)][k] / static_cast<double>(by_focus.size());
+        }
+    }
+    for (auto& pattern : all) {
+        std::ranges::transform(pattern, quiet, pattern.begin(), std::minus());
+    }
+    return all;
+}
+
+double FocusProbes::least_energy() const {
+    struct Pair {
+        double energy; // the smaller of both images
+        bool agrees;
+    };
+    constexpr double flat = 1e-5; // contrast: below the step of 16 bits
+    constexpr double agreeing = 0.5;
+    std::vector<std::vector<Pair>> of_probes(probes_.size());
+    std::vector<double> least_of_flat;
+    parallel_items(static_cast<int>(probes_.size()), [&](int probe) {
+        const auto& singles = probes_[static_cast<std::size_t>(probe)].singles;
+        const auto all = patterns(probes_[static_cast<std::size_t>(probe)]);
+        for (std::size_t k = 1; k < all.size(); ++k) {
+            const double product = std::inner_product(all[k].begin(), all[k].end(), all[k - 1].begin(), 0.0);
+            const double here = std::inner_product(all[k].begin(), all[k].end(), all[k].begin(), 0.0);
+            const double before = std::inner_product(all[k - 1].begin(), all[k - 1].end(), all[k - 1].begin(), 0.0);
+            const double smaller = std::min(singles[k], singles[k - 1]);
+            if (smaller > flat && here > 0 && before > 0) {
+                of_probes[static_cast<std::size_t>(probe)].push_back(
+                    {.energy = smaller * smaller, .agrees = product >= agreeing * std::sqrt(here * before)});
+            }
+        }
+    });
+    for (const Probe& probe : probes_) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const double single : probe.singles) {
+            least = single > flat ? std::min(least, single) : least;
+        }
+        if (std::isfinite(least) && std::ranges::any_of(probe.singles, [](double single) { return single <= flat; })) {
+            least_of_flat.push_back(least * least);
+        }
+    }
+    std::vector<Pair> pairs;
+    for (const auto& some : of_probes) {
+        pairs.insert(pairs.end(), some.begin(), some.end());
+    }
+    std::ranges::sort(pairs, std::greater(), &Pair::energy);
+    // Energies within a factor of two are compared, the largest first.
+    constexpr std::size_t least_pairs = 8;
+    constexpr double least_share = 0.2;
+    double found = 0;
+    for (std::size_t first = 0, end = 0, others = 0; first < pairs.size() && found == 0; ++first) {
+        for (; end < pairs.size() && 2 * pairs[end].energy > pairs[first].energy; ++end) {
+            others += pairs[end].agrees ? 0 : 1;
+        }
+        const std::size_t count = end - first;
+        if (count >= least_pairs && static_cast<double>(others) >= least_share * static_cast<double>(count)) {
+            found = 2 * pairs[first].energy;
+        }
+        others -= pairs[first].agrees ? 0 : 1;
+    }
+    constexpr std::size_t least_flat = 5;
+    if (least_of_flat.size() >= std::max(least_flat, probes_.size() / 20)) {
+        const auto middle = least_of_flat.begin() + static_cast<std::ptrdiff_t>(least_of_flat.size() / 2);
+        std::ranges::nth_element(least_of_flat, middle);
+        found = std::max(found, 4 * *middle);
+    }
+    return found;
 }
 
 double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, double most_rival) const {

@@ -100,6 +100,13 @@ class FocusProbes {
     std::optional<double> persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
                                                         bool curves_averaged) const;
 
+    // The energy (the square of the focus measure of an image) below which what the probes show is no evidence of
+    // texture: twice the largest at which a fifth or more of the patterns of neighbouring images do not agree, and at
+    // least four times the least energy of places that show nothing at all in other images. Compression leaves such
+    // places, where the blocks of a blank part are flat or have one of a few patterns; chance alone then makes
+    // neighbouring images alike. 0: all patterns agree.
+    double least_energy() const;
+
     // The share of the probes whose curves have a second maximum with at least this prominence over the first's height
     // above the mean, and more than noise makes. Noise is found from second differences of single images' curves, which
     // narrow peaks make larger: fewer are found then. axial_weights: of both averages.
@@ -154,6 +161,8 @@ class FocusProbes {
     };
     // A probe's image minus the mean of all of its images, channels added up; the mean is 0.
     std::vector<double> pattern(const Probe& probe, std::size_t image) const;
+    // The patterns of all images less the mean of those with the least focus, a third of all.
+    std::vector<std::vector<double>> patterns(const Probe& probe) const;
     // True if the patterns of images are found in their neighbours too, wherever they have moved: if their largest
     // correlations exceed those with other places' neighbours by more than chance. True also if places are few.
     bool reappears(const std::vector<PlaceOfImages>& places) const;

@@ -31,18 +31,23 @@ double chi_square_exceeded_as(double normal, double degrees) {
 } // namespace
 
 PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const std::vector<double>& neighbour_weights,
-                                   int images, double rate)
-    : independent_(independent) {
+                                   int images, double rate, double least_energy)
+    : independent_(independent), least_energy_(least_energy) {
     for (int at = 0; at < images; ++at) {
         const auto shares = axial_shares(neighbour_weights, at, images);
         kept_.push_back(std::accumulate(shares.begin(), shares.end(), 0.0, [](double sum, const Share& share) {
             return sum + static_cast<double>(share.weight) * static_cast<double>(share.weight);
         }));
     }
-    mean_kept_ = std::accumulate(kept_.begin(), kept_.end(), 0.0) / images;
+    const double mm = std::accumulate(kept_.begin(), kept_.end(), 0.0) / images; kept_.push_back(mm);
     // The largest value of the curve is chosen among as many places as there are means that share few images.
     const double places = std::max(1.0, images * kept_[kept_.size() / 2]);
     normal_ = normal_exceeded_with(rate / places);
+}
+
+bool PersistenceLimit::tells() const {
+    constexpr double whole = 0.9; // the ratio is 1 / f for images that are all alike
+    return independent_.deviation > 0 && independent_.largest * kept_[kept_.size() / 2] < whole;
 }
 
 double PersistenceLimit::beyond_chance(double window_share) const {
@@ -53,14 +58,21 @@ double PersistenceLimit::beyond_chance(double window_share) const {
 }
 
 double PersistenceLimit::least_ratio() const {
-    return independent_.deviation > 0 ? independent_.mean + beyond_chance(1) : 0;
+    return !kept_.empty() && tells() ? independent_.mean + beyond_chance(1) : 0;
 }
 
 bool PersistenceLimit::exceeded_by(const focus::f64::CurveRecord& curve, double window_share) const {
-    if (!(independent_.deviation > 0)) {
+    if (kept_.empty()) {
         return true;
     }
-    const double images = static_cast<double>(kept_.size());
+    if (!tells()) {
+        constexpr double persistent = 0.25;
+        const double kept = kept_[static_cast<std::size_t>(curve.at)], independent = kept * curve.alone;
+        const double all_alike = curve.alone;
+        return curve.alone >= least_energy_ &&
+               curve.joint * curve.joint - independent >= persistent * (all_alike - independent);
+    }
+    const double images = static_cast<double>(kept_.size() - 1);
     const double mean = independent_.mean, beyond = beyond_chance(window_share);
     const double kept = kept_[static_cast<std::size_t>(curve.at)];
     const auto persisting = [mean](double joint, double alone, double share) {
@@ -73,7 +85,7 @@ bool PersistenceLimit::exceeded_by(const focus::f64::CurveRecord& curve, double 
     if (by_chance || !(here > 0)) {
         return false;
     }
-    const double everywhere = persisting(curve.joint_squares / images, curve.alone_sum / images, mean_kept_);
+    const double everywhere = persisting(curve.joint_squares / images, curve.alone_sum / images, kept_.back());
     // If the same pattern persisted everywhere, this is the deviation of noise of energy N and of its product with the
     // pattern.
     const double noise = kept * passing;

@@ -33,13 +33,19 @@ class PersistenceLimit {
     // No limit is set.
     PersistenceLimit() = default;
     // The limit that curves of noise alone exceed with the probability `rate`, wherever in the scan they have their
-    // maximum. neighbour_weights: of an image's neighbours, by their distance.
+    // maximum. neighbour_weights: of an image's neighbours, by their distance. least_energy: of E, where J does not
+    // tell texture from noise (tells()).
     PersistenceLimit(const IndependentImages& independent, const std::vector<double>& neighbour_weights, int images,
-                     double rate);
+                     double rate, double least_energy = 0);
+
+    // False if nothing is known of the noise, or if its images can be alike by chance. In the blank parts of compressed
+    // images only a few patterns are left, and in most images none.
+    bool tells() const;
 
     // True if the energy that makes the curve's maximum persists: J exceeds the limit of noise alone, or half of E
     // persists; and S rises above its mean along z by more than the noise there allows, so that a pattern in all images
-    // (dust on the sensor) does not pass for texture in focus. window_share: pixels of the window that lie in the
+    // (dust on the sensor) does not pass for texture in focus. Where the limit does not tell them apart, a quarter of E
+    // must persist and E be the least energy. window_share: pixels of the window that lie in the
     // image, over those of a whole window.
     bool exceeded_by(const focus::f64::CurveRecord& curve, double window_share) const;
 
@@ -53,7 +59,7 @@ class PersistenceLimit {
     double normal_ =
         0; // standard normal value exceeded as rarely as noise may exceed the limit at one place of the scan
     std::vector<double> kept_; // f of every image
-    double mean_kept_ = 0;
+    double least_energy_ = 0;
 };
 
 } // namespace vkfv::topography

@@ -360,10 +360,17 @@ StackFigures StackEvaluator::judge_stack() const {
         // If even strong texture does not persist, persistence is no evidence for a point.
         constexpr double least_persistence = 0.25;
         const auto of_strong = probes_->persistence_of_strong_texture(neighbour_weights_, averaged);
-        if (of_strong.value_or(1) >= least_persistence)
-            figures.persistence =
-                PersistenceLimit(probes_->independent_images(neighbour_weights_, averaged), neighbour_weights_, images,
-                                 share_of_rate * options_.false_peak_rate);
+        if (of_strong.value_or(1) >= least_persistence) {
+            const auto limit_by = [&](const IndependentImages& independent, double least_energy) {
+                return PersistenceLimit(independent, neighbour_weights_, images,
+                                        share_of_rate * options_.false_peak_rate, least_energy);
+            };
+            const auto independent = probes_->independent_images(neighbour_weights_, averaged);
+            figures.persistence = limit_by(independent, 0);
+            if (!figures.persistence.tells()) {
+                figures.persistence = limit_by(independent, probes_->least_energy());
+            }
+        }
     }
     if (options_.false_peak_rate < 1 && images > few_images) {
         const auto curves = probes_->some_curves();

@@ -27,6 +27,41 @@ Grid<float> binned(const Channels& image, int side) {
     return result;
 }
 
+// Pearson's correlation of the reference with the image as it is seen through the transform, over the points of both.
+double correlation_through(const Grid<float>& reference, const Grid<float>& image, const ImageTransform& transform) {
+    const Grid<float> moved = resampled({image}, transform).front();
+    const int beside_x = static_cast<int>(std::ceil(std::abs(transform.shift_x))),
+              beside_y = static_cast<int>(std::ceil(std::abs(transform.shift_y)));
+    double count = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+    for (int row = beside_y; row < reference.rows - beside_y; ++row) {
+        for (int column = beside_x; column < reference.columns - beside_x; ++column) {
+            const double here = reference(column, row), there = moved(column, row);
+            count += 1;
+            a += here;
+            b += there;
+            aa += here * here;
+            bb += there * there;
+            ab += here * there;
+        }
+    }
+    const double variances = (aa - a * a / count) * (bb - b * b / count);
+    return count > 0 && variances > 0 ? (ab - a * b / count) / std::sqrt(variances) : 0;
+}
+
+// The movement between two images; none if it does not make them more alike. Where images have no texture in common, as
+// where compression left blocks of few patterns, phase correlation finds some large shift all the same.
+MeasuredTransform movement_between(const Grid<float>& before, const Grid<float>& here) {
+    constexpr double small = 1;        // bins; not worth a doubt
+    constexpr double least_gain = 0.3; // share of what the images do not have in common
+    MeasuredTransform found = measured_transform(before, here);
+    const auto& [shift_x, shift_y, scale] = found.transform;
+    const double corner =
+        std::hypot(shift_x, shift_y) + std::abs(scale - 1) * 0.5 * std::hypot(here.columns, here.rows);
+    const bool alike = corner < small || 1 - correlation_through(before, here, found.transform) <
+                                             (1 - least_gain) * (1 - correlation_through(before, here, {}));
+    return alike ? found : MeasuredTransform{};
+}
+
 } // namespace
 
 void find_faults_of_light(const std::vector<double>& brightness, StackFaults& faults) {
@@ -79,7 +114,7 @@ void StackFaultsFinder::add(const Channels& image) {
     Grid<float> here = binned(image, static_cast<int>(pixels_a_bin_));
     if (!before_.values.empty()) {
         movements_.push_back(std::async(
-            std::launch::async, [before = std::move(before_), here] { return measured_transform(before, here); }));
+            std::launch::async, [before = std::move(before_), here] { return movement_between(before, here); }));
     }
     before_ = std::move(here);
 }

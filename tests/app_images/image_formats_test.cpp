@@ -151,6 +151,7 @@ Kind by_libtiff(std::string name, const char* mode, int bits, int photometric = 
         auto words = scaled<std::uint16_t>(picture, 65535, 1);
         if (photometric == PHOTOMETRIC_MINISWHITE) {
             std::ranges::transform(bytes, bytes.begin(), std::bit_not<std::uint8_t>());
+            std::ranges::transform(words, words.begin(), std::bit_not<std::uint16_t>());
         }
         for (int row = 0; row < picture.rows; ++row) {
             const auto first = static_cast<std::size_t>(row * picture.columns);
@@ -265,6 +266,7 @@ std::vector<Kind> formats() {
         by_libtiff("bigtiff16.tif", "wl8", 16),
         by_libtiff("bigtiff_big_endian.tif", "wb8", 8),
         by_libtiff("white_is_zero.tif", "wl", 8, PHOTOMETRIC_MINISWHITE),
+        by_libtiff("white_is_zero_16.tif", "wl", 16, PHOTOMETRIC_MINISWHITE),
         by_library("grey8.png", {.format = "png"}),
         by_library("grey16.png", {.format = "png", .type = word, .white = 65535}),
         by_library("colour.png", {.format = "png", .channels = 3}),

@@ -481,6 +481,7 @@ TEST(Topography, AFolderMayHoldMoreAndLessThanTheSeries) {
     }
     write("more/output.tif", stack[3]);
     write("more/depth_1.tif", stack[5]);
+    write_file(folder / "more/img_101.tif", ""); // a copy that was interrupted
     const auto small = OIIO::ImageOutput::create("tiff");
     ASSERT_TRUE(small->open((folder / "more/img_100.tif").string(), OIIO::ImageSpec(8, 8, 1, OIIO::TypeDesc::UINT8)));
     ASSERT_TRUE(small->write_image(OIIO::TypeDesc::UINT8, std::vector<std::uint8_t>(64).data()));
@@ -488,7 +489,9 @@ TEST(Topography, AFolderMayHoldMoreAndLessThanTheSeries) {
     ASSERT_EQ(evaluate(folder, "whole", "of_whole").exit_code, 0);
     const auto more = evaluate(folder, "more", "of_more");
     ASSERT_EQ(more.exit_code, 0) << more.standard_error;
-    for (const char* name : {"output.tif is left out", "depth_1.tif is left out", "img_100.tif is left out"}) {
+    for (const char* name :
+         {"output.tif is left out", "depth_1.tif is left out", "img_100.tif is left out: it has another size",
+          "img_101.tif is left out: it cannot be read"}) {
         EXPECT_THAT(more.standard_error, HasSubstr(name));
     }
     EXPECT_EQ(read_file(folder / "of_more/topography.tif"), read_file(folder / "of_whole/topography.tif"));
@@ -701,6 +704,11 @@ TEST(ImageOrder, LeavesRoomForImagesThatAreMissing) {
     const auto uneven = scan::order_of_names({"i_1", "i_2", "i_3", "i_4", "i_5", "i_6.5"});
     EXPECT_THAT(uneven.doubt, HasSubstr("i_6.5 follows i_5"));
     EXPECT_THAT(uneven.heights, testing::ElementsAre(0, 1, 2, 3, 4, 5));
+    // A camera's counter begins again after 9999: not thousands of images are missing.
+    const auto again = scan::order_of_names(
+        {"DSC_9995", "DSC_9996", "DSC_9997", "DSC_9998", "DSC_9999", "DSC_0001", "DSC_0002", "DSC_0003"});
+    EXPECT_THAT(again.doubt, HasSubstr("DSC_9995 follows DSC_0003"));
+    EXPECT_THAT(again.heights, testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
 }
 
 TEST(ImageOrder, ReadsTheUnitBehindTheNumber) {
@@ -720,6 +728,59 @@ TEST(ImageOrder, ReadsTheUnitBehindTheNumber) {
             EXPECT_NEAR(*found.first, -30 * length, 1e-12);
         }
     }
+}
+
+// Names as programs write them: the value of a height may be negative in all of them, stand beside a count, or have a
+// decimal comma. Where a hyphen separates, the number has no sign.
+TEST(ImageOrder, ReadsHeightsHoweverNamesStateThem) {
+    struct Case {
+        std::vector<std::string> names;
+        double first, step; // um
+    };
+    for (const Case& one : std::vector<Case>{
+             {{"z=-30.0um", "z=-28.0um", "z=-26.0um", "z=-24.0um"}, -30, 2},
+             {{"z-30.0um", "z-28.0um", "z-26.0um", "z-24.0um"}, -30, 2},
+             {{"img-z-30um", "img-z-28um", "img-z-26um"}, 26, 2},
+             {{"z(-3)_um", "z(-2)_um", "z(-1)_um"}, 0, 0}, // the bracket stands between number and unit
+             {{"img_001_z-8.0um", "img_002_z-6.0um", "img_003_z-4.0um"}, -8, 2},
+             {{"img_001_z8nm", "img_002_z6nm", "img_003_z4nm"}, 4e-3, 2e-3},
+             {{"z2,5um", "z3,0um", "z3,5um"}, 2.5, 0.5},
+             {{"z=-2,5 um", "z=-2,0 um", "z=-1,5 um"}, -2.5, 0.5},
+             {{"z\u22123um", "z\u22122um", "z\u22121um", "z0um"}, -3, 1},
+             {{"5microns", "6microns", "7microns"}, 5, 1},
+         }) {
+        const auto found = scan::order_of_names(one.names);
+        EXPECT_EQ(found.doubt, "") << one.names.front();
+        EXPECT_NEAR(found.first.value_or(0), one.first * 1e-3, 1e-12) << one.names.front();
+        EXPECT_NEAR(found.step.value_or(0), one.step * 1e-3, 1e-12) << one.names.front();
+    }
+    // Numbers of pixels with a unit behind two of them do not say which is the height.
+    EXPECT_NE(scan::order_of_names({"x1um_z3um", "x2um_z2um", "x3um_z1um"}).doubt, "");
+    // A sign does not turn counts round.
+    EXPECT_THAT(scan::order_of_names({"img-003", "img-001", "img-002"}).order, testing::ElementsAre(1, 2, 0));
+    EXPECT_THAT(scan::order_of_names({"k=-3", "k=-1", "k=-2"}).order, testing::ElementsAre(0, 2, 1));
+    EXPECT_EQ(scan::order_of_names({"1,9", "1,10", "1,11"}).doubt, ""); // a comma alone only separates
+}
+
+TEST(ImageOrder, TellsSeriesApartByANumber) {
+    std::vector<std::string> scans, three, tiles, heights, midnight;
+    for (int k = 0; k < 5; ++k) {
+        for (int series = 1; series <= 2; ++series) {
+            scans.push_back(fmt::format("scan{}_{:03}", series, k));
+            heights.push_back(fmt::format("s{}_z{}um", series, k));
+        }
+        for (int series = 1; series <= 5; ++series) {
+            three.push_back(fmt::format("{}-{:02}-a{}", series % 3, k, 7));
+            tiles.push_back(fmt::format("x{}_y{}", series, k));
+        }
+        midnight.push_back(fmt::format("IMG_{}_{}", k < 3 ? 20240101 : 20240102, k < 3 ? 235957 + k : k - 3));
+    }
+    EXPECT_THAT(scan::several_series(scans), testing::ElementsAre(0, 1));
+    EXPECT_THAT(scan::several_series(heights), testing::ElementsAre(0, 1));
+    EXPECT_THAT(scan::several_series(three), testing::SizeIs(3));
+    EXPECT_THAT(scan::several_series(tiles), testing::SizeIs(5));
+    EXPECT_THAT(scan::several_series(midnight), testing::IsEmpty());
+    EXPECT_THAT(scan::several_series({"i1_z2um", "i2_z4um", "i3_z6um", "i4_z8um"}), testing::IsEmpty());
 }
 
 TEST(ImageOrder, TellsAResultFromASeries) {

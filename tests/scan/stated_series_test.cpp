@@ -80,7 +80,10 @@ TEST(StatedSeries, KnowsEveryUnit) {
                                                                                   {"microns", 1e-3},
                                                                                   {"nm", 1e-6},
                                                                                   {"mm", 1},
-                                                                                  {"inch", 25.4}}) {
+                                                                                  {"inch", 25.4},
+                                                                                  {"Microns", 1e-3},
+                                                                                  {"Inch", 25.4},
+                                                                                  {"\u00c5", 1e-7}}) {
         const auto stated = imagej("images=3\nslices=3\nunit=" + unit + "\nspacing=2\n", 3, 4);
         EXPECT_NEAR(stated.z_step.value(), 2 * length, 1e-12 * length) << unit;
         EXPECT_NEAR(stated.pitch_x.value(), length / 4, 1e-12 * length) << unit;
@@ -88,6 +91,20 @@ TEST(StatedSeries, KnowsEveryUnit) {
     const auto pixels = imagej("images=3\nslices=3\nunit=pixel\nspacing=2\n", 3, 4);
     EXPECT_FALSE(pixels.z_step || pixels.pitch_x);
     EXPECT_THAT(pixels.doubts, testing::ElementsAre(testing::HasSubstr("without a unit")));
+}
+
+// The number is one whatever the language of the program that wrote it, and the unit whatever its capitals.
+TEST(StatedSeries, ReadsNumbersAsProgramsWriteThem) {
+    for (const char* two_and_a_half : {"2.5", "2,5", " 2.5 ", "+2.5", "2.5E0", "25,0e-1"}) {
+        const auto stated = imagej("images=3\nslices=3\nunit=um\nspacing=" + std::string(two_and_a_half) + "\n", 3, 4);
+        EXPECT_NEAR(stated.z_step.value_or(0), 2.5e-3, 1e-15) << two_and_a_half;
+    }
+    for (const char* none : {"NaN", "1.234,5", "1,234,5", "two", "+-2", "", " "}) {
+        const auto stated = imagej("images=3\nslices=3\nunit=um\nspacing=" + std::string(none) + "\n", 3, 4);
+        EXPECT_FALSE(stated.z_step) << none;
+        EXPECT_THAT(stated.doubts, testing::ElementsAre(testing::HasSubstr("spacing"))) << none;
+    }
+    EXPECT_FALSE(imagej("images=3\nslices=3\nunit=Mm\nspacing=2\n", 3, 4).z_step);
 }
 
 // The unit of heights may be another than that of the pixels; where the text has no pitch, it follows from the tags'

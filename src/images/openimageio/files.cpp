@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace vkfv::images::openimageio {
@@ -75,11 +77,17 @@ void check_size(const OpenImage& image, const OIIO::ImageSpec& spec, const std::
 template <class Value, class Stored>
 Grid<Value> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const std::filesystem::path& path,
                         int page, int channel) {
+    [[maybe_unused]] const bool from_white = counts_from_white(input, spec);
     std::vector<Stored> stored(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
     // A strip that cannot be read leaves an error and zeros, but counts as success.
     if (!input.read_image(page, 0, channel, channel + 1, type_of<Stored>(), stored.data()) || input.has_error())
         refuse_file(path, fmt::format("page {}", page), input.geterror(), "pixel values up to the end of the image",
                     "The file is truncated or damaged: write or copy it anew.");
+    if constexpr (std::is_unsigned_v<Stored>) {
+        for (Stored& value : stored) {
+            value = from_white ? static_cast<Stored>(std::numeric_limits<Stored>::max() - value) : value;
+        }
+    }
     return upright<Value>(stored, spec.width, spec.height, orientation_of(spec));
 }
 

@@ -79,6 +79,7 @@ std::vector<float> read_heights(OIIO::ImageInput& input, const OIIO::ImageSpec& 
     const int band_rows = whole_strips_only(input, spec)
                               ? spec.height
                               : std::min(spec.tile_height > 0 ? spec.tile_height : rows_at_once, spec.height);
+    const bool from_white = counts_from_white(input, spec);
     std::vector<float> band;
     std::vector<float> heights;
     for (int row = 0; row < spec.height; row += std::min(band_rows, spec.height - row)) {
@@ -100,7 +101,7 @@ std::vector<float> read_heights(OIIO::ImageInput& input, const OIIO::ImageSpec& 
             if (channels.colour && (values[0] != values[1] || values[0] != values[2])) {
                 fail(file, fmt::format("colour in {}", place()), "grey values", "Convert the image to grey.");
             }
-            heights.push_back(values[0]);
+            heights.push_back(from_white ? 1 - values[0] : values[0]);
         }
     }
     return heights;

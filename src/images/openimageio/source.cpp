@@ -203,6 +203,13 @@ int opacity_channel(const OIIO::ImageSpec& spec) {
     return named == spec.channelnames.end() ? -1 : static_cast<int>(named - spec.channelnames.begin());
 }
 
+bool counts_from_white(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec) {
+    constexpr int white_is_zero = 0, unknown = -1; // TIFF 6.0, tag 262
+    return std::string_view(input.format_name()) == "tiff" &&
+           (spec.format.basetype == OIIO::TypeDesc::UINT16 || spec.format.basetype == OIIO::TypeDesc::UINT32) &&
+           spec.get_int_attribute("tiff:PhotometricInterpretation", unknown) == white_is_zero;
+}
+
 void refuse_lost_values(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const std::filesystem::path& path) {
     if (whole_strips_only(input, spec) && (spec.tile_width > 0 || spec.height == 1)) {
         refuse(path, spec.tile_width > 0 ? "values of 64 bits in tiles" : "a single row of values of 64 bits",

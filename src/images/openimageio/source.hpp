@@ -33,6 +33,9 @@ OpenImage open_image(std::string_view bytes, const std::filesystem::path& path);
 // The index of the opacity channel; -1: none. For a GIF, OpenImageIO 2.4 gives an index behind the last channel.
 int opacity_channel(const OIIO::ImageSpec& spec);
 
+// True if the values of a TIFF are as stored and 0 is white: OpenImageIO turns values of 8 bits alone round.
+bool counts_from_white(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec);
+
 // True for values of 64 bits in a TIFF, which OpenImageIO 2.4 reads only by whole strips. For tiles and single rows it
 // returns uninitialized memory and reports success.
 inline bool whole_strips_only(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec) {

@@ -1,4 +1,5 @@
 // Noise that changes along z is not measured: without texture, beside texture, and with a pattern that all images have.
+#include "core/mathematics/units.hpp"
 #include "topography/persistence.hpp"
 #include "topography/topography.hpp"
 
@@ -25,7 +26,48 @@ struct Case {
     double deviation = 0.005; // of the noise of strength 1, over the brightness
     double grey_value = 0;    // over the brightness; 0: values are not rounded
     double pattern = 0;       // standard deviation of what all images have, over the brightness
+    double quantum = 0;       // step of the coefficients of compressed blocks, over the brightness; 0: not compressed
 };
+
+// Blocks of 8 x 8 values, each rounded to multiples of a step in the coefficients of its cosine transform, as JPEG
+// does (ITU-T T.81, A.3.3 and A.3.4). The step grows with the frequency.
+void compress(Grid<float>& image, double quantum) {
+    constexpr int block = 8;
+    Grid<double> cosine(block, block); // by place and order
+    for (int order = 0; order < block; ++order) {
+        for (int place = 0; place < block; ++place) {
+            cosine(place, order) =
+                std::cos((2 * place + 1) * order * pi / (2 * block)) * std::sqrt((order == 0 ? 1.0 : 2.0) / block);
+        }
+    }
+    for (int top = 0; top < side; top += block) {
+        for (int left = 0; left < side; left += block) {
+            Grid<double> values(block, block);
+            for (int v = 0; v < block; ++v) {
+                for (int u = 0; u < block; ++u) {
+                    double coefficient = 0;
+                    for (int y = 0; y < block; ++y) {
+                        for (int x = 0; x < block; ++x) {
+                            coefficient += cosine(x, u) * cosine(y, v) * image(left + x, top + y);
+                        }
+                    }
+                    const double step = quantum * (1 + 0.3 * (u + v));
+                    coefficient = step * std::round(coefficient / step);
+                    for (int y = 0; coefficient != 0 && y < block; ++y) {
+                        for (int x = 0; x < block; ++x) {
+                            values(x, y) += cosine(x, u) * cosine(y, v) * coefficient;
+                        }
+                    }
+                }
+            }
+            for (int y = 0; y < block; ++y) {
+                for (int x = 0; x < block; ++x) {
+                    image(left + x, top + y) = static_cast<float>(values(x, y));
+                }
+            }
+        }
+    }
+}
 
 double bell(double at, double middle, double width) {
     return 1 + 3 * std::exp(-0.5 * std::pow((at - middle) / width, 2));
@@ -48,7 +90,9 @@ std::vector<Case> cases() {
             {.name = "few images", .noise = wide, .images = 13},
             {.name = "8 bits", .noise = wide, .deviation = 0.004, .grey_value = 1.0 / 120},
             {.name = "8 bits, little noise", .noise = pulse, .deviation = 0.002, .grey_value = 1.0 / 120},
-            {.name = "dust", .noise = wide, .pattern = 0.01}};
+            {.name = "dust", .noise = wide, .pattern = 0.01},
+            {.name = "compressed", .noise = strong, .grey_value = 1.0 / 120, .quantum = 0.05},
+            {.name = "compressed little", .noise = wide, .grey_value = 1.0 / 120, .quantum = 0.02}};
 }
 
 // Images of brightness 1. With `object` the left half has texture, in focus a little before the middle of the scan.
@@ -67,9 +111,14 @@ std::vector<Grid<float>> images_of(const Case& of, bool object, unsigned seed) {
             for (int column = 0; column < side; ++column) {
                 double value = 1 + of.pattern * pattern(column, row) + of.deviation * of.noise(at) * normal(random);
                 value += column < side / 2 ? contrast * texture(column, row) : 0;
-                values(column, row) =
-                    static_cast<float>(of.grey_value > 0 ? std::round(value / of.grey_value) * of.grey_value : value);
+                values(column, row) = static_cast<float>(value);
             }
+        }
+        if (of.quantum > 0) {
+            compress(values, of.quantum);
+        }
+        for (float& value : values.values) {
+            value = of.grey_value > 0 ? static_cast<float>(std::round(value / of.grey_value) * of.grey_value) : value;
         }
     }
     return images;
