@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view ledger_name = "ledger.csv";
 constexpr std::string_view timings_header = "what,seconds,rays_per_s";
 constexpr std::string_view images_name = "images";
-constexpr std::string_view lock_name = ".lock"; // shards add their number: core/files/result_folder.hpp
+constexpr std::string_view lock_name = ".lock"; // shards add the name of their part (result_folder.cpp)
 
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"\n") == std::string::npos) {
