@@ -55,5 +55,5 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "mesa-vulkan-drivers | nvidia-driver-libs, fonts-dejavu-core")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-tifffile") # of the Python package
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-tifffile") # the Python package imports them
 include(CPack)

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# What tools/demo and tools/test share: to be sourced, not run.
+# Functions that tools/demo and tools/test share: to be sourced, not run.
 
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." || exit
 

@@ -1,4 +1,4 @@
-// The measurements of --bench, part by part, as one JSON document:
+// The measurements of vkfv bench, part by part, as one JSON document:
 //   program, commit, date (UTC), device, driver, device_type, configuration, traversal
 //   aimed_share       of the source's flux that launched rays stand for; runs, rays_per_run
 //   validation[]      what, rays, total_z, chi_square, degrees, p, agrees

@@ -1,4 +1,4 @@
-// The parts of --bench, described in bench.hpp. All except validation, stages, hits and pipeline need the rays of a
+// The parts of vkfv bench, described in bench.hpp. All except validation, stages, hits and pipeline need the rays of a
 // run.
 #pragma once
 

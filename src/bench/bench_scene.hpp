@@ -1,4 +1,4 @@
-// The scene and device on which the parts of --bench are measured, and the timing of runs.
+// The scene and device on which the parts of vkfv bench are measured, and the timing of runs.
 #pragma once
 
 #include "bench/bench.hpp"

@@ -8,7 +8,7 @@
 
 namespace vkfv::camera {
 
-// The presets; published and assumed values are listed beside them.
+// Sony's sensors whose figures are known; presets.cpp lists which figures are published and which assumed.
 enum class Preset { none, imx250, imx900 };
 
 // The options of a preset except exposure, frames and seed; none for Preset::none.

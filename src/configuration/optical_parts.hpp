@@ -22,7 +22,7 @@ optics::Medium read_glass(const Section& section, const TextKey& key, const Conf
 std::vector<const Key*> with_placement(std::vector<const Key*> keys);
 optics::Placement read_placement(const Section& section);
 
-// The key of the glass catalogues. Readers of glasses ask whether it could be read.
+// The key that names the files of glass catalogues. If they could not be read, an unknown glass is no error of its own.
 inline constexpr const char* glass_catalogs_key = "glass_catalogs";
 
 } // namespace vkfv

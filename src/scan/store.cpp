@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view ledger_name = "ledger.csv";
 constexpr std::string_view timings_header = "what,seconds,rays_per_s";
 constexpr std::string_view images_name = "images";
-constexpr std::string_view lock_name = ".lock"; // .lock_... of shards too: core/files/result_folder.hpp
+constexpr std::string_view lock_name = ".lock"; // shards add the name of their part (result_folder.cpp)
 
 std::string ledger_header(const trace::Ledger& ledger) {
     std::string header = "image,z_um,rays,detected_rays,emitted_W";

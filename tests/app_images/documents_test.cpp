@@ -275,7 +275,7 @@ done
 few=(--set trace.rays=2000 --set detector.pixels=16 --set diffraction.model=none)
 case $command in
 check | image) words+=("${few[@]}") ;;
-# Of so few rays no height is more than chance.
+# With so few rays no height is better than chance.
 stack) words+=(--set scan.z_start_um=-4 --set scan.z_stop_um=4 --set scan.z_step_um=4 --set topography.false_peak_rate=1 "${few[@]}") ;;
 sweep) words+=(--set specimen.pitch_um=2 "${few[@]}") ;;
 camera) words+=(--pixels 32 --averaged 4) ;;

@@ -26,7 +26,7 @@ vkfv_specimen_kinds(${PROJECT_BINARY_DIR})
 
 class Directives(unittest.TestCase):
     def configured(self, file=None, old="", new=""):
-        """What CMake says after `old` of a copy became `new`, and the registry that was generated: empty if it failed."""
+        """Replaces `old` with `new` in a copy of the sources; returns CMake's output and the registry, empty if CMake failed."""
         with tempfile.TemporaryDirectory() as folder:
             copy = pathlib.Path(folder)
             shutil.copytree(ROOT / "shaders", copy / "shaders")
@@ -47,7 +47,7 @@ class Directives(unittest.TestCase):
         return said
 
     def read(self, text):
-        """What the function says of a file, and what it has found there: empty if it refuses the file."""
+        """The output of the function for a file of this text, and the directives that it found: empty if it refuses the file."""
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "model.glsl"
             file.write_text(text)

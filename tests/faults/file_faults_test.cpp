@@ -49,7 +49,7 @@ bool concerns(const Fault& fault, const char* name) {
     return fs::path(fault.subject).filename() == name;
 }
 
-// Whether the command may well end as if nothing had been.
+// Whether the command may succeed in spite of this fault.
 bool may_pass(const Fault& fault) {
     return fault.effect == "short"                                // the rest is written next
            || (fault.call == "close" && concerns(fault, ".lock")) // nothing was written to it

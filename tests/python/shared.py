@@ -82,7 +82,7 @@ def _temporary() -> tempfile.TemporaryDirectory:
 
 
 def folder() -> Path:
-    """Of this run of the tests; it goes with the run."""
+    """The folder of this run of the tests, which is removed at its end."""
     return Path(_temporary().name)
 
 
@@ -104,7 +104,7 @@ def step_configuration() -> Path:
 
 @functools.cache
 def events() -> list[dict]:
-    """Of the log while tilted() was traced."""
+    """The events of the log while tilted() was traced."""
     return []
 
 
@@ -122,7 +122,7 @@ def with_camera_and_stage() -> vkfv.Stack:
 
 @functools.cache
 def small_image() -> vkfv.Image:
-    """Of the tilted plane, 2 um above best focus."""
+    """An image of the tilted plane, 2 um above best focus."""
     return vkfv.image(configuration(), 2, out=folder() / "small.tif", **SMALL)
 
 

@@ -47,7 +47,7 @@ LONG_IMAGES = 241
 
 
 def printed_json(*arguments):
-    """What the program prints with --json: a JSON document and nothing else."""
+    """With --json the program prints a JSON document and nothing else."""
     command = [vkfv.find_program(), *map(str, arguments), "--json"]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     return json.loads(done.stdout), done
@@ -169,7 +169,7 @@ class RunTest(unittest.TestCase):
 
 class ErrorTest(unittest.TestCase):
     def test_names_are_no_options(self):
-        """What a file is called reaches the program as a file."""
+        """A file whose name looks like an option reaches the program as a file."""
         for name in ("--help", "--version", "-x.toml", "--json"):
             for command in (vkfv.check, vkfv.run):
                 with self.subTest(name=name, command=command.__name__), self.assertRaisesRegex(vkfv.InputError, "no such file"):

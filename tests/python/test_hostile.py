@@ -60,7 +60,7 @@ class HostileTest(unittest.TestCase):
         self.assertIn(b"limited.csv", done.stderr)
 
     def test_closed_descriptors_are_not_taken(self):
-        """What the program says goes into no file, though its number is free."""
+        """Messages go into no file that is opened while the descriptor of standard output or error is closed."""
         surface = shared.tilted().folder / "topography.x3p"
         for closed in ((2,), (1, 2), (0, 1, 2)):
             out = shared.folder() / "closed.csv"

@@ -1,4 +1,4 @@
-"""What the program writes against assets/schemas, and docs/outputs.md against these."""
+"""Compares the files that the program writes with assets/schemas, and docs/outputs.md with these."""
 
 import fnmatch
 import importlib.machinery

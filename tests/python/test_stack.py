@@ -66,7 +66,7 @@ class PlacesByWidth:
         return numpy.interp(at, numpy.arange(len(self.line)), self.line)
 
     def curvatures(self, table, found, image):
-        """Of curves with the largest value at the same image."""
+        """The curvatures of curves whose largest value is at the same image."""
         result = numpy.interp(found, table[0], table[2])
         for k in numpy.unique(image):
             here, same = image == k, table[3] == k
@@ -93,7 +93,7 @@ class PlacesByWidth:
         return best, weight
 
     def places(self, image, offset, curvature, measured, reach):
-        """Of a map of maxima; widths are means over `reach` pixels around."""
+        """The places of the curves of a map of maxima; widths are means over `reach` pixels around."""
         at = image + offset
         lower = at < self.last_image / 2
         found = numpy.where(lower, at, self.last_image - at)
@@ -115,7 +115,7 @@ class PlacesByWidth:
 
 
 def maximum(before, here, after):
-    """Of three logarithms of a curve: the distance of the maximum from the middle one, and the curvature."""
+    """The distance of a maximum from the middle of three values, and its curvature, by their logarithms."""
     return 0.5 * (before - after) / (before - 2 * here + after), 2 * here - before - after
 
 
@@ -169,7 +169,7 @@ class StackTest(unittest.TestCase):
         self.assertGreater(numpy.nanmedian(high) - numpy.nanmedian(low), 3)
 
     def test_images_are_sharpest_where_the_plane_is(self):
-        """By the images alone: the slopes, signs included, without anything that the evaluation wrote."""
+        """The slopes, signs included, follow from the images alone, without anything that the evaluation wrote."""
         curves = self.stack.focus_curves(smoothing_steps=1.0)
         self.assertEqual(curves.shape, (13, shared.ROWS, shared.COLUMNS))
         sharpest = vkfv.Array(curves.z[curves.values.argmax(axis=0)], ("y", "x"), {"y": curves.y, "x": curves.x})
@@ -216,7 +216,7 @@ class StackTest(unittest.TestCase):
         numpy.testing.assert_allclose(kept, curves, atol=1e-6 * curves.max())
 
     def test_every_measure_and_window(self):
-        """Of a single pixel as of all; at the border too."""
+        """A single pixel has the curve that it has among all, at the border too."""
         for measure in ("standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet",
                         "gradient-and-curvature"):
             for shape in ("box", "gaussian"):

@@ -92,6 +92,19 @@ class X3pTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "no main.xml"):
             vkfv.read_x3p(file)
 
+    def test_a_file_cut_or_changed_anywhere_is_refused_as_a_value(self):
+        whole = write_x3p("whole.x3p", "D", "<f8", valid=bytes([0b110111])).read_bytes()
+        file = shared.folder() / "hurt.x3p"
+        cut = [whole[:length] for length in range(0, len(whole), 41)]
+        changed = [whole[:at] + bytes([whole[at] ^ 0x55]) + whole[at + 1 :] for at in range(0, len(whole), 3)]
+        for content in [b"no archive", *cut, *changed]:
+            file.write_bytes(content)
+            try:
+                vkfv.read_x3p(file)  # a changed byte may be one that no reader looks at
+                self.assertIn(content, changed)
+            except ValueError:
+                pass
+
     def test_every_checksum_is_held_to(self):
         whole = write_x3p("whole.x3p", "D", "<f8", valid=bytes([0b110111]))
         with zipfile.ZipFile(whole) as archive:

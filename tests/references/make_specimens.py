@@ -37,7 +37,7 @@ LETTER = [
 
 
 def is_high(row):
-    """Which cells of a row (from the lowest y) belong to the letter."""
+    """Whether each cell of a row (counted from the lowest y) belongs to the letter."""
     return [c == "#" for c in LETTER[len(LETTER) - 1 - row]]
 
 

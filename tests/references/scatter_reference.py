@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What scatter models keep of the light, and how far they are from reciprocal, by quadrature. Shares no code with vkfv.
+"""The share of light that scatter models keep, and how far they are from reciprocal, by quadrature. Shares no code with vkfv.
 
 GGX keeps the light that facets reflect once: the integral of D(h) G(i, o) / (4 cos i) over all directions o, with the distribution D
 of slopes and the height-correlated masking G as Walter et al. and Heitz print them; alpha is the slope that half of the projected area

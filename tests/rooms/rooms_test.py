@@ -60,7 +60,7 @@ class House:
         return None, None
 
     def included_by(self, path):
-        """What a file includes; of a header that is generated, all kinds of which the generator makes it."""
+        """The files that a file includes; for a generated header, all the kinds from which it is generated."""
         if path in self.includes:
             return self.includes[path]
         kinds = path.parent / "kinds"

@@ -27,7 +27,7 @@ def table():
 
 
 class Packages:
-    """What dpkg says of the packages of this machine."""
+    """The packages of this machine, as dpkg lists them."""
 
     def __init__(self, names):
         fields = "${Package}\t${Essential}\t${Priority}\t${Pre-Depends}, ${Depends}\n"
@@ -62,7 +62,7 @@ def ways(path):
 
 
 def missing(files, packages):
-    """What tools/setup does not install, as "file:line: program: why"."""
+    """The programs that tools/setup does not install, as "file:line: program: why"."""
     made = programs.targets_of(files)
     starts = {}
     for name, text in files.items():

@@ -39,8 +39,8 @@ surface::HeightMap wavy_flat() {
 }
 
 TEST(Flatness, IsTheMaximumHeightOfTheLevelledFilteredFlat) {
-    // The wave is even about the middle, so that no plane takes of it; its extremes stand a window inside the borders.
-    // 2^-(L / period)^2 of a wave passes; of a texture of two points 2^-25 at least.
+    // The wave is even about the middle, so that removing a plane does not change it; its extremes stand a window
+    // inside the borders. 2^-(L / period)^2 of a wave passes; of a texture of two points 2^-25 at least.
     for (const double index : {0.02, 0.04}) {
         const double kept = std::exp2(-std::pow(index / period, 2));
         EXPECT_NEAR(flatness_deviation(wavy_flat(), index), 2 * amplitude * kept, 0.01 * amplitude) << index;

@@ -129,7 +129,7 @@ void expect_precise(const optics::Instrument& instrument, Train train, const std
     EXPECT_LT(found.arrived, static_cast<int>(rays.size())); // edges are met
     EXPECT_LE(found.rms, bounds.rms);
     EXPECT_LE(found.worst, bounds.worst);
-    EXPECT_GT(found.rms, 0.01 * nm); // it was not double on both
+    EXPECT_GT(found.rms, 0.01 * nm); // the device computes in float, not in double as the host
     for (const std::size_t ray : found.differing) {
         EXPECT_TRUE(passes_within_rounding(instrument, train, rays[ray], rounded[ray])) << "ray " << ray;
     }

@@ -21,8 +21,8 @@ def nyquist_pitch_um(aperture):
 
 @functools.lru_cache(maxsize=None)
 def _transfer_table(aperture, z_um, spherical_waves=0.0, samples=64, frequencies=101):
-    """By the separation of the pupils, 0 to 2 radii: sum over the overlap of both displaced pupils, of which a quarter is like
-    every other. spherical_waves: Zernike's primary spherical aberration, 6 rho^4 - 6 rho^2 + 1, in waves."""
+    """Transfer function by separation of the pupils, 0 to 2 radii: the sum over the overlap of two displaced pupils, of which
+    one quarter is computed, since all four are equal. spherical_waves: Zernike's primary spherical aberration, 6 rho^4 - 6 rho^2 + 1, in waves."""
     u = (numpy.arange(samples) + 0.5) / samples
     y = u[:, None]
     result = numpy.empty(frequencies)

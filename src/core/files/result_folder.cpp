@@ -119,7 +119,7 @@ ResultFolder::ResultFolder(fs::path folder, const std::string& part) : folder_(s
         remove_unfinished_files(folder_);
         std::error_code none;
         if (fs::exists(folder_ / checksums_name, none)) {
-            std::vector<std::string> strange; // ignored here; --verify reports them
+            std::vector<std::string> strange; // ignored here; vkfv verify reports them
             for (const auto& [sum, name] : entries_of(folder_, strange)) {
                 earlier_[name] = sum;
             }

@@ -1,4 +1,4 @@
-// Tables of rays as CSV, which --trace-rays reads and writes.
+// Tables of rays as CSV, which vkfv trace-rays reads and writes.
 #pragma once
 
 #include "trace/device/ray_trace.hpp"

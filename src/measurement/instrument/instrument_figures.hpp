@@ -1,5 +1,5 @@
-// The figures that --check prints of a configuration: the instrument's first-order data and quality, its scan, specimen
-// and verdict.
+// The figures that vkfv check prints of a configuration: the instrument's first-order data and quality, its scan,
+// specimen and verdict.
 #pragma once
 
 #include "configuration/configuration.hpp"

@@ -28,8 +28,8 @@ class WorkingDevices {
     // names no device.
     explicit WorkingDevices(const std::string& selector);
 
-    // A tracer on all of these devices. It ignores the devices and the divisor of batches in the options. Throws
-    // DeviceError, also where a device has not opened.
+    // A tracer on all of these devices. Of the options, `device` and `batch_divisor` are not used: each device has its
+    // own. Throws DeviceError, also if a device could not be opened.
     std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                                const trace::TraceOptions& options) const;
 

@@ -57,7 +57,7 @@ class Chords {
     const Wavefront& wavefront_;
     double along_;
     bool round_ = false;
-    double highest_ = pi / 2; // angle of the highest rim, from `along`
+    double highest_ = pi / 2; // rad, from `along_` to the direction in which the pupil reaches highest
     double lowest_ = -pi / 2;
 };
 

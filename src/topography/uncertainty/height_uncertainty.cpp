@@ -83,7 +83,8 @@ double overlap(const Weights& a, const Weights& b, int d) {
     return sum;
 }
 
-// <f>: the variance of the weighted sum of errors that have this correlation and variance 1.
+// The variance of the sum of errors, times these weights, that have this correlation and variance 1:
+// height_uncertainty.hpp writes it <f>.
 double variance_of(const std::vector<Product>& weights, const Grid<double>& correlation) {
     const int reach = correlation.columns / 2;
     double variance = 0;

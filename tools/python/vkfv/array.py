@@ -11,9 +11,9 @@ import numpy
 class Array:
     """Values with a unit and a coordinate for each dimension, as xarray.DataArray has them.
 
-    `dims` name the dimensions; `coords[dim]` are their positions in um. Of maps these are ("y", "x"), of stacks
-    ("z", "y", "x"). As in the files the first row has the highest y: y falls along its dimension, x and z rise.
-    numpy's functions take an Array as its values.
+    `dims` name the dimensions, ("y", "x") for maps and ("z", "y", "x") for stacks; `coords[dim]` are their positions in
+    um ("channel" counts from 0). As in the files the first row has the highest y: y falls along its dimension, x and z
+    rise. numpy's functions take an Array as its values. Raises ValueError if coordinates and values differ in length.
     """
 
     values: numpy.ndarray
@@ -40,29 +40,39 @@ class Array:
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """The number of values along each of `dims`."""
         return self.values.shape
 
     @property
     def x(self) -> numpy.ndarray:
+        """Positions of the columns, um. Raises KeyError if the array has no such dimension; so do `y` and `z`."""
         return self.coords["x"]
 
     @property
     def y(self) -> numpy.ndarray:
+        """Positions of the rows, um, from the highest to the lowest."""
         return self.coords["y"]
 
     @property
     def z(self) -> numpy.ndarray:
+        """Heights of the focal plane, um."""
         return self.coords["z"]
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """Left, right, bottom and top edge of the outermost pixels in um: `extent` of matplotlib's imshow."""
+        """Left, right, bottom and top edge of the outermost pixels in um, the `extent` of matplotlib's imshow.
+
+        Needs at least two columns and two rows; raises IndexError with fewer.
+        """
         x, y = self.x, self.y
         half_x, half_y = abs(x[1] - x[0]) / 2, abs(y[1] - y[0]) / 2
         return (x.min() - half_x, x.max() + half_x, y.min() - half_y, y.max() + half_y)
 
     def isel(self, **places: Any) -> "Array":
-        """By place along dimensions: an integer takes the dimension away, a slice keeps it."""
+        """Selects by index along dimensions, from 0: an integer removes the dimension, a slice keeps it.
+
+        Raises KeyError for a dimension that the array lacks, IndexError for an index outside.
+        """
         self._check(places)
         index = tuple(places.get(dim, slice(None)) for dim in self.dims)
         kept = tuple(dim for dim, at in zip(self.dims, index) if not isinstance(at, int | numpy.integer))
@@ -70,15 +80,16 @@ class Array:
         return replace(self, values=self.values[index], dims=kept, coords=coords)
 
     def sel(self, **positions: float | slice) -> "Array":
-        """By position in um along dimensions: the nearest place, or all from slice.start to slice.stop.
+        """Selects by position in um along dimensions: the nearest place, or all from slice.start to slice.stop inclusive.
 
-        Raises KeyError for a position further than half a step outside.
+        A number removes the dimension, a slice keeps it. Raises KeyError for a dimension that the array lacks, and for a
+        position more than half a step outside.
         """
         self._check(positions)
         return self.isel(**{dim: self._place(dim, at) for dim, at in positions.items()})
 
     def with_values(self, values: numpy.ndarray, *, unit: str | None = None, name: str | None = None) -> "Array":
-        """Other values at the same places."""
+        """An Array of other values, of the same shape, at the same places; ValueError for another shape."""
         return replace(
             self,
             values=numpy.asarray(values),
@@ -87,7 +98,7 @@ class Array:
         )
 
     def to_xarray(self):
-        """The same as xarray.DataArray; needs xarray."""
+        """The same as an xarray.DataArray, with the units in `attrs`. Raises ImportError without xarray."""
         import xarray
 
         coords = {dim: xarray.DataArray(self.coords[dim], dims=dim, attrs={"units": "um"}) for dim in self.dims}

@@ -3,6 +3,8 @@
     vkfv.run("c.toml", trace={"rays": 1e6}, **{"specimen.height_um": 5})
 
 They override what the file says, as the option --set does; a misspelt key raises InputError with the nearest name.
+Every function takes `program`, the path of vkfv (None: see find_program()), turns warnings of the program into
+RunWarning, and raises InputError, DeviceError, RunError or FolderInUse if the program fails.
 """
 
 import json
@@ -21,7 +23,7 @@ PathLike = str | os.PathLike
 
 
 def _path(path: PathLike) -> str:
-    """As an argument that is no option, whatever the file is called."""
+    """The path as an argument that is not taken for an option, even if the name begins with a dash."""
     text = os.fspath(path)
     return os.path.join(os.curdir, text) if text.startswith("-") else text
 
@@ -52,9 +54,9 @@ def run(
     on_event: Callable[[Event], None] | None = None,
     **overrides,
 ) -> Stack:
-    """Traces and measures a stack (`vkfv stack`), or continues one.
+    """Traces and measures a stack (`vkfv stack`), or continues one; returns its folder as a Stack.
 
-    out: the folder; None: that of the configuration. on_event: is called with each event of the log, for example
+    out: the folder; None: that of the configuration. on_event is called with each event of the log, for example
     {"event": "image", "done": 3, "images": 31, "seconds_left": 12.1, ...}; docs/cluster.md lists them.
     """
     outcome = _call("stack", config, overrides, out=out, options=("--json",), program=program, on_event=on_event)
@@ -62,7 +64,8 @@ def run(
 
 
 class Image:
-    """One exposure: `pixels`, and `figures` as `vkfv image --json` tells them."""
+    """One exposure: `pixels`, an Array (y, x) in W or, with a camera, DN; `figures`, the dictionary that `vkfv image
+    --json` prints (docs/outputs.md has the units); `file`, the TIFF."""
 
     def __init__(self, figures: dict):
         self.figures = figures
@@ -82,7 +85,7 @@ def image(
     on_event: Callable[[Event], None] | None = None,
     **overrides,
 ) -> Image:
-    """Traces one exposure with the focal plane at z_um (`vkfv image`). out: a folder or a .tif file."""
+    """Traces one exposure (`vkfv image`). z_um: height of the focal plane over best focus. out: a folder or a .tif file."""
     options = ("--json", "--z", repr(float(z_um)))
     outcome = _call("image", config, overrides, out=out, options=options, program=program, on_event=on_event)
     return Image(json.loads(outcome.text))
@@ -96,7 +99,7 @@ def sweep(
     on_event: Callable[[Event], None] | None = None,
     **overrides,
 ) -> Sweep:
-    """Measures every combination of the parameters in [sweep] (`vkfv sweep`), or continues one."""
+    """Measures every combination of the parameters in [sweep] (`vkfv sweep`), or continues a sweep. out: the folder."""
     outcome = _call("sweep", config, overrides, out=out, options=("--json",), program=program, on_event=on_event)
     return Sweep(outcome.folder)
 
@@ -115,9 +118,14 @@ def evaluate(
     program: PathLike | None = None,
     **overrides,
 ) -> Stack:
-    """Heights of images that are there (`vkfv topography`): of a stack's folder, or those of another instrument in a
-    folder or a TIFF file, with the step from image to image and the pixels' distance where the files do not state them;
-    channel and frame from 1, of a file of several; dark and flat_field are images that are taken off."""
+    """Computes heights from existing images (`vkfv topography`).
+
+    images: the folder of a stack, or the images of another instrument in a folder or a TIFF file. z_step_um, pitch_um and
+    z_start_um: step from image to image, distance of neighbouring pixels and height of the first image; needed where the
+    files do not state them. channel, frame: which of several, from 1. dark: an image without light, which is subtracted;
+    flat_field: an image of an even surface, by which images are divided. out: the folder of the results, which must not be
+    that of the images.
+    """
     given = {"--z_step_um": z_step_um, "--pitch_um": pitch_um, "--z_start_um": z_start_um}
     options = tuple(word for name, value in given.items() if value is not None for word in (name, repr(float(value))))
     further = {"--channel": channel, "--frame": frame}
@@ -129,6 +137,6 @@ def evaluate(
 
 
 def check(config: PathLike, *, program: PathLike | None = None, **overrides) -> dict:
-    """The instrument's first-order data and warnings (`vkfv check --json`); needs no device."""
+    """The instrument's figures, with units in their names, and warnings (`vkfv check --json`). Needs no device."""
     outcome = _call("check", config, overrides, out=None, options=("--json",), program=program, on_event=None)
     return json.loads(outcome.text)

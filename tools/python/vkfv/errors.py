@@ -1,8 +1,8 @@
-"""What the program says when it cannot do what was asked, as exceptions."""
+"""Exceptions for the ways in which the program can fail, with its message and exit code."""
 
 
 class Error(Exception):
-    """The program failed. `message` is what it said, `exit_code` what it ended with (128 + N: by signal N)."""
+    """The program failed. `message` is its text, `exit_code` its exit code (128 + N if signal N ended it)."""
 
     def __init__(self, message: str, exit_code: int):
         super().__init__(message)
@@ -31,7 +31,7 @@ class RunWarning(UserWarning):
 
 
 def error_of(exit_code: int, message: str) -> Error:
-    """The exception for an exit code as subprocess tells it (negative: a signal)."""
+    """The exception for an exit code of subprocess, which is -N if signal N ended the program."""
     if exit_code < 0:
         return RunError(message, 128 - exit_code)
     kinds = {2: InputError, 3: DeviceError, 4: RunError, 5: FolderInUse}

@@ -15,13 +15,19 @@ REACH = 2  # pixels that the widest response sees on either side
 
 
 def window_weights(width_px: int, shape: str) -> numpy.ndarray:
-    """Of a row or a column at distances 0, 1, ... from the window's middle; a pixel's weight is the product."""
+    """Weights of a window at distances 0, 1, ... pixels from its middle, along rows or columns.
+
+    A pixel's weight is the product of both, up to a factor. shape: "box" or "gaussian".
+    """
     distance = numpy.arange(width_px // 2 + 1)
     return numpy.ones(len(distance)) if shape == "box" else numpy.exp(-0.5 * (5.0 * distance / width_px) ** 2)
 
 
 def axial_shares(smoothing_steps: float, images: int) -> numpy.ndarray:
-    """Matrix of the Gaussian average along z: row k holds what each image contributes to the average at k."""
+    """Matrix (images, images) of the Gaussian average along z: row k has the images' shares in the average at image k.
+
+    smoothing_steps: standard deviation of the Gaussian in steps from image to image; 0: no average.
+    """
     distance = numpy.abs(numpy.subtract.outer(numpy.arange(images), numpy.arange(images)))
     if smoothing_steps == 0:
         return numpy.eye(images)
@@ -52,7 +58,7 @@ MAGNITUDES = ("modified-laplacian", "gradient-and-curvature")  # all others are 
 
 
 def _response(images: numpy.ndarray, measure: str) -> numpy.ndarray:
-    """What the window gathers of each pixel; images with REACH mirrored pixels around them."""
+    """The response of each pixel, which the window averages. images: with REACH mirrored pixels on every side."""
 
     def squares(*pairs):
         return sum(_convolved(images, along_y, along_x) ** 2 for along_y, along_x in pairs)
@@ -84,7 +90,7 @@ def _windowed(values: numpy.ndarray, weights: numpy.ndarray, inner: tuple[slice,
 
 
 def _part(length: int, asked: slice, margin: int) -> tuple[slice, slice]:
-    """What is needed of a dimension for the places asked for, and where these are in it."""
+    """The part of a dimension that is needed for the places asked for, and their slice in that part."""
     start, stop, step = asked.indices(length)
     if step != 1:
         raise ValueError("rows and columns are slices without a step")
@@ -95,10 +101,11 @@ def _part(length: int, asked: slice, margin: int) -> tuple[slice, slice]:
 def focus_curves(
     images: Array, settings: Mapping[str, Any], rows: slice = slice(None), columns: slice = slice(None)
 ) -> Array:
-    """The focus measure of each image (z, y, x) at these rows and columns, averaged along z as the evaluation does.
+    """Focus curves: the focus measure of each image at these rows and columns, averaged along z as the evaluation does.
 
-    settings: focus_measure, window_px, window_shape and smoothing_steps, as results.json has them under "topography".
-    Images of several channels (z, y, x, channel) are not taken. The values are dimensionless.
+    images: (z, y, x), of any unit; the result has the same dimensions. rows, columns: slices without a step. settings:
+    focus_measure, window_px, window_shape and smoothing_steps, as results.json has them under "topography". The values are
+    dimensionless. Images of several channels are not taken. Raises ValueError for an unknown measure or slices with a step.
     """
     weights = window_weights(settings["window_px"], settings["window_shape"])
     measure = settings["focus_measure"]

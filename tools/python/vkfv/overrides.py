@@ -8,7 +8,10 @@ from typing import Any
 
 
 def toml_text(value: Any) -> str:
-    """A value as TOML. A pathlib.Path is taken from the current folder, a str as the configuration takes it."""
+    """A value as TOML. A pathlib.Path is relative to the current folder, a str is used as in the configuration file.
+
+    Raises TypeError for what TOML cannot hold.
+    """
     if hasattr(value, "tolist"):  # of numpy: an array or a scalar
         value = value.tolist()
     if isinstance(value, bool):

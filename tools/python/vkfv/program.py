@@ -20,9 +20,9 @@ Event = dict[str, Any]
 
 
 def find_program(program: str | os.PathLike | None = None) -> Path:
-    """The program: the one given, that of the environment variable VKFV, `vkfv` of PATH, or the one built in this checkout.
+    """The path of the program: the one given, that of the environment variable VKFV, `vkfv` of PATH, or that built here.
 
-    Raises FileNotFoundError.
+    Raises FileNotFoundError if there is none.
     """
     for asked, by in ((program, "the argument `program`"), (os.environ.get("VKFV"), "the environment variable VKFV")):
         if asked:
@@ -45,19 +45,19 @@ def find_program(program: str | os.PathLike | None = None) -> Path:
 
 @dataclass
 class Outcome:
-    """What a command printed, and the events of its log (docs/cluster.md lists them)."""
+    """The text that a command printed, and the events of its log (docs/cluster.md lists them)."""
 
     text: str
     events: list[Event] = field(default_factory=list)
 
     @property
     def folder(self) -> Path:
-        """That holds the results."""
+        """The folder that holds the results, by the last event of `stack` or `sweep`."""
         return Path(next(event["folder"] for event in reversed(self.events) if event.get("event") == "results"))
 
 
 class _Log:
-    """The program's standard error: an object a line."""
+    """The lines of the program's standard error, each a JSON object, sorted into events, warnings and errors."""
 
     def __init__(self, on_event: Callable[[Event], None] | None):
         self.events: list[Event] = []
@@ -82,7 +82,7 @@ class _Log:
             self._errors.append(entry["text"])
 
     def message(self) -> str:
-        """Of a failure."""
+        """The message of a failure: the errors of the log, else the last other lines."""
         return "\n".join(self._errors or self._others[-20:]) or "the program ended without a message"
 
 

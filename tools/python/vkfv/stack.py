@@ -17,7 +17,7 @@ from .x3p import read_x3p
 
 
 class PointState(IntEnum):
-    """The values of a mask: what became of a point."""
+    """The values of a mask: whether a point was measured, or why not (docs/topography.md explains each)."""
 
     MEASURED = 0
     NO_PEAK = 1
@@ -30,9 +30,10 @@ class PointState(IntEnum):
 
 
 class Stack:
-    """A folder that `vkfv stack`, `merge` or `topography` wrote. Files are read when they are asked for, and kept.
+    """A folder that `vkfv stack`, `merge` or `topography` wrote. A file is read when its property is first used, and kept.
 
-    docs/outputs.md says what every file holds. Lengths are um; the first row of every map has the highest y.
+    Maps are Arrays (y, x); lengths are um; the first row has the highest y. docs/outputs.md says what every file holds.
+    Raises FileNotFoundError for a folder without results.json and stack.toml, and where a property's file is missing.
     """
 
     def __init__(self, folder: str | os.PathLike):
@@ -45,25 +46,25 @@ class Stack:
 
     @cached_property
     def results(self) -> dict:
-        """results.json."""
+        """The contents of results.json; the keys end in their units, and docs/outputs.md lists them."""
         return json.loads((self.folder / "results.json").read_text(encoding="utf-8"))
 
     @cached_property
     def configuration(self) -> dict:
-        """stack.toml, every default spelled out; empty of the images of another instrument."""
+        """The contents of stack.toml, with all defaults; empty for images of another instrument."""
         file = self.folder / "stack.toml"
         return tomllib.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
 
     @property
     def dimensions(self) -> list[dict]:
-        """Of a standard: nominal, true and measured; empty of other specimens."""
+        """The dimensions of a standard, each with nominal, true and measured value; empty for other specimens."""
         return self.results.get("dimensions", [])
 
     # Maps
 
     @cached_property
     def coords(self) -> dict[str, numpy.ndarray]:
-        """x and y of the pixels' centres, um: the heights' grid; of a stack without heights, that of its images."""
+        """x and y of the pixels' centres, um: the grid of the heights, or of the images where there are no heights."""
         evaluated = self.folder / "height_noise.tif"  # written whatever `output.surfaces` says
         if evaluated.exists():
             return grid_of(evaluated)
@@ -72,39 +73,39 @@ class Stack:
 
     @cached_property
     def heights(self) -> Array:
-        """Measured heights, um; NaN: not measured."""
+        """Measured heights, um; NaN where a point is not measured."""
         if (self.folder / "topography.tif").exists():
             return self._map("topography.tif", "um", "height")
         return read_x3p(self.folder / "topography.x3p")
 
     @cached_property
     def truth(self) -> Array:
-        """True heights at the pixels' centres, um. FileNotFoundError of the images of another instrument."""
+        """True heights where the pixels look, um. Raises FileNotFoundError for images of another instrument."""
         return self._map("truth.tif", "um", "true height")
 
     @cached_property
     def deviation(self) -> Array:
-        """Measured less true heights after form and filters, um."""
+        """Measured minus true heights, both after removal of form and filtering, um."""
         return self._map("deviation.tif", "um", "deviation")
 
     @cached_property
     def height_noise(self) -> Array:
-        """Standard deviation of the height that the images' noise brings, um."""
+        """Standard deviation of the height due to the noise of the images, um."""
         return self._map("height_noise.tif", "um", "noise of the height")
 
     @cached_property
     def height_uncertainty(self) -> Array:
-        """Standard uncertainty of the height by what neighbouring windows do not agree on, um."""
+        """Standard uncertainty of the height, um (docs/heights.md lists its parts)."""
         return self._map("height_uncertainty.tif", "um", "uncertainty of the height")
 
     @cached_property
     def mask(self) -> Array:
-        """A PointState for each point."""
+        """A PointState for each point, as an integer."""
         return self._map("mask.tif", "", "state")
 
     @property
     def measured(self) -> numpy.ndarray:
-        """Whether a point has a height of its own: neither left out nor repaired."""
+        """Whether each point has a height of its own, neither left out nor repaired: booleans (y, x)."""
         return self.mask.values == PointState.MEASURED
 
     @cached_property
@@ -119,7 +120,7 @@ class Stack:
 
     @cached_property
     def all_in_focus(self) -> Array:
-        """Every pixel from the images around its height, in their unit."""
+        """Each pixel from the images around its height: (y, x) or (y, x, channel). Values have the images' unit."""
         values, _, _ = read_pixels(self.folder / "all_in_focus.tif")
         if values.ndim == 2:
             return Array(values, ("y", "x"), self.coords, name="all in focus")
@@ -128,18 +129,18 @@ class Stack:
 
     @cached_property
     def diffracted(self) -> "DiffractedMaps | None":
-        """The maps of the images after `[diffraction]` blurred them; None without."""
+        """The maps of the images after `[diffraction]` blurred them; None if it did not."""
         return DiffractedMaps(self) if "diffracted" in self.results else None
 
     # Images
 
     @cached_property
     def z(self) -> numpy.ndarray:
-        """Nominal heights of the focal plane, um, one an image."""
+        """Nominal height of the focal plane in each image, um. Raises FileNotFoundError if the folder has no images."""
         return numpy.array([float(described(read_description(file))["z_um"]) for file in self._image_files])
 
     def image(self, place: int) -> Array:
-        """One image of the stack, from 0; -1: the last."""
+        """One image (y, x) of the stack, in W or DN. place: from 0; -1: the last. Raises IndexError beyond."""
         values, description, _ = read_pixels(self._image_files[place])
         text = described(description)
         name = f"image at z = {text['z_um']} um"
@@ -147,19 +148,21 @@ class Stack:
 
     @cached_property
     def images(self) -> Array:
-        """All images, (z, y, x). Of 1000 images of 1000 x 1000 that is 4 GB: `image` takes one at a time."""
+        """All images, (z, y, x), in W or DN. 1000 images of 1000 x 1000 pixels take 4 GB; `image` reads one at a time."""
         images = [self.image(place) for place in range(len(self._image_files))]
         z = numpy.array([float(image.attributes["z_um"]) for image in images])
         values = numpy.stack([image.values for image in images])
         return Array(values, ("z", "y", "x"), {"z": z, **self.coords}, images[0].unit, "image")
 
     def focus_curves(self, rows: slice = slice(None), columns: slice = slice(None), **settings) -> Array:
-        """Focus curves (z, y, x) of these rows and columns, averaged along z, by the settings that the heights were
-        found by; others of [topography] may be given instead. See vkfv.focus_curves()."""
+        """Focus curves (z, y, x) of these rows and columns (slices without a step), averaged along z.
+
+        The settings are those by which the heights were found; keywords replace them. See vkfv.focus_curves().
+        """
         return focus_curves(self.images, {**self.results["topography"], **settings}, rows, columns)
 
     def focus_curve(self, x: float, y: float, **settings) -> Array:
-        """That of the pixel nearest to (x, y) in um."""
+        """The focus curve (z) of the pixel nearest to (x, y), um. Raises KeyError outside of the field."""
         row, column = (self.images._place(dim, at) for dim, at in (("y", y), ("x", x)))
         curves = self.focus_curves(slice(row, row + 1), slice(column, column + 1), **settings)
         return curves.isel(y=0, x=0)
@@ -168,12 +171,15 @@ class Stack:
 
     @cached_property
     def ledger(self) -> list[dict]:
-        """ledger.csv, a record an image: where its light went, in W."""
+        """The lines of ledger.csv, a dictionary an image: where its light went, in W."""
         return read_records(self.folder / "ledger.csv")
 
     @cached_property
     def stage(self) -> list[dict]:
-        """stage.csv, a record an image: where it was really taken. FileNotFoundError without a `[stage]`."""
+        """The lines of stage.csv, a dictionary an image: where it was really taken.
+
+        Raises FileNotFoundError without `[stage]`.
+        """
         return read_records(self.folder / "stage.csv")
 
     # Inside
@@ -191,7 +197,7 @@ class Stack:
 
 
 class DiffractedMaps(Stack):
-    """The maps of the folder `diffracted` in a stack's, and their figures."""
+    """The maps and figures of the folder `diffracted` in that of a stack, read like a Stack; it has no images."""
 
     def __init__(self, stack: Stack):
         self.folder = stack.folder / "diffracted"

@@ -13,7 +13,7 @@ from .tiff import read_map
 
 
 class Sweep:
-    """A folder that `vkfv sweep` wrote."""
+    """A folder that `vkfv sweep` wrote. Raises FileNotFoundError if it has no sweep.json."""
 
     def __init__(self, folder: str | os.PathLike):
         self.folder = Path(folder)
@@ -25,14 +25,14 @@ class Sweep:
 
     @property
     def parameters(self) -> list[dict]:
-        """What was varied: "key", "label" and "values"."""
+        """The varied parameters, each with its "key", "label" and "values"."""
         return self._json["parameters"]
 
     @cached_property
     def records(self) -> list[dict]:
-        """A record a combination: values by the parameters' labels, figures by name (None: there is none), "folder".
+        """A dictionary for each combination: the parameters' values by label, figures by name (None: no value), "folder".
 
-        pandas.DataFrame(sweep.records) is the table.
+        The names of figures end in their units. pandas.DataFrame(sweep.records) is the table.
         """
         return [
             {
@@ -44,15 +44,15 @@ class Sweep:
         ]
 
     def column(self, name: str) -> numpy.ndarray:
-        """A parameter or a figure of all records; NaN where there is none."""
+        """One parameter (by label) or figure (by name) of all records; NaN where a record has none."""
         return numpy.array([numpy.nan if record.get(name) is None else record[name] for record in self.records])
 
     def select(self, **values) -> list[dict]:
-        """The records with these values of parameters, by label."""
+        """The records whose parameters, named by label, have these values. Raises KeyError for an unknown label."""
         return [record for record in self.records if all(record[label] == value for label, value in values.items())]
 
     def stacks(self, record: dict) -> list[Stack]:
-        """Of a sweep of stacks: that of a record, or its repeats."""
+        """The stack of a record, or its repeats. Raises ValueError if this is a sweep of images."""
         if self._json["of"] != "stacks":
             raise ValueError("this is a sweep of images: ask for image()")
         folder = record["folder"]
@@ -60,7 +60,7 @@ class Sweep:
         return [Stack(repeat) for repeat in repeats or [folder]]
 
     def image(self, record: dict) -> Array:
-        """Of a sweep of images: that of a record."""
+        """The image (y, x) of a record, in W or DN. Raises ValueError if this is a sweep of stacks."""
         if self._json["of"] != "images":
             raise ValueError("this is a sweep of stacks: ask for stacks()")
         return read_map(record["folder"] / "image.tif", "image")

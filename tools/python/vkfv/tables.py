@@ -5,7 +5,7 @@ import os
 
 
 def read_records(path: str | os.PathLike) -> list[dict]:
-    """A dictionary a line; numbers as numbers, empty cells as None."""
+    """The lines of a CSV file as dictionaries by the names in its head; numbers as numbers, empty cells as None."""
 
     def value(text: str):
         if text == "":

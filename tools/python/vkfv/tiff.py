@@ -13,18 +13,18 @@ UM_PER_CM = 1e4
 
 
 def described(description: str) -> dict[str, str]:
-    """The lines `key=value` of an ImageDescription."""
+    """The values in the lines `key=value` of an ImageDescription, by key."""
     return dict(line.split("=", 1) for line in description.splitlines() if "=" in line)
 
 
 def image_unit(description: str) -> str:
-    """Of an image's values, "W" or "DN", as its ImageDescription says; empty of other files."""
+    """The unit of an image's values, "W" or "DN", by its ImageDescription; empty for files of other programs."""
     found = re.search(r"(?:radiant flux|radiant flux per pixel|grey values) in (W|DN)\b", description)
     return found[1] if found else ""
 
 
 def read_description(path: str | os.PathLike) -> str:
-    """ImageDescription, without the pixels."""
+    """The ImageDescription of the first page; the pixels are not read."""
     with tifffile.TiffFile(path) as file:
         return file.pages[0].description
 
@@ -45,7 +45,7 @@ def read_pixels(path: str | os.PathLike) -> tuple[numpy.ndarray, str, float]:
 
 
 def grid_of(path: str | os.PathLike) -> dict[str, numpy.ndarray] | None:
-    """Coordinates in um, in double, that a height map's description tells; None of other images."""
+    """The coordinates "x" and "y" in um that the description of a height map states; None for other images."""
     with tifffile.TiffFile(path) as file:
         page = file.pages[0]
         text = described(page.description)
@@ -62,7 +62,7 @@ def grid_of(path: str | os.PathLike) -> dict[str, numpy.ndarray] | None:
 def read_map(
     path: str | os.PathLike, name: str, unit: str | None = None, coords: dict[str, numpy.ndarray] | None = None
 ) -> Array:
-    """A map of a value a pixel. unit, coords: None: those that the file tells."""
+    """Reads an image with one value a pixel. unit, coords: None takes those that the file states."""
     values, description, pitch = read_pixels(path)
     coords = coords or grid_of(path) or centred_coords(values.shape[1], values.shape[0], pitch)
     return Array(values, ("y", "x"), coords, image_unit(description) if unit is None else unit, name)

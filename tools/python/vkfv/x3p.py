@@ -1,9 +1,11 @@
 """X3P files, the exchange format of ISO 5436-2 and ISO 25178-72."""
 
+import errno
 import hashlib
 import os
 import warnings
 import zipfile
+import zlib
 from xml.etree import ElementTree
 
 import numpy
@@ -18,7 +20,7 @@ FREELY_PACKED, LARGEST_PACKING = 1 << 28, 64
 
 
 def _child(parent, *names):
-    """By names without their namespace's prefix; None where there is none."""
+    """The element below `parent` by these names in turn, without prefixes of namespaces; None if one is missing."""
     for name in names:
         if parent is None:
             return None
@@ -116,41 +118,49 @@ def _provenance(record2) -> dict[str, str]:
 def read_x3p(path: str | os.PathLike, *, accept_checksum: bool = False) -> Array:
     """Heights of a surface on a regular grid in um, NaN where not measured, the first row with the highest y.
 
-    `attributes` are creator, date, comment and the instrument's manufacturer, model and so on, as far as the file tells.
-    Raises ValueError where the file is something else or damaged, or its contents do not have the checksums that it
-    states; accept_checksum: then they are read all the same, with a warning.
+    `attributes` are creator, date, comment and the instrument's manufacturer, model and so on, as far as the file states
+    them. Raises ValueError if the file is no X3P file, is damaged, or does not have the checksums that it states;
+    accept_checksum=True reads a file with other checksums, with a warning.
     """
-    with zipfile.ZipFile(path) as zipped:
-        archive = _Archive(path, zipped, accept_checksum)
-        xml = archive.read("main.xml", LARGEST_XML)
-        if archive.folder + "md5checksum.hex" in zipped.namelist():
-            archive.check("main.xml", xml, archive.read("md5checksum.hex", LARGEST_CHECKSUM_FILE)[:32].decode("latin-1"))
-        root = ElementTree.fromstring(xml)
-        record1, record2, record3 = (_child(root, f"Record{number}") for number in (1, 2, 3))
-        if _text(record1, "FeatureType") != "SUR":
-            raise ValueError(f"FeatureType {_text(record1, 'FeatureType')}: a surface (SUR) is read alone")
-        axes = _child(record1, "Axes")
-        for axis in ("CX", "CY"):
-            if _text(axes, axis, "AxisType") != "I":
-                raise ValueError(f"{axis} is not incremental: a regular grid is read alone")
-        columns, rows = (int(_text(record3, "MatrixDimension", size)) for size in ("SizeX", "SizeY"))
-        count = columns * rows
-        if not (columns > 0 and rows > 0 and count <= LARGEST_POINT_COUNT):
-            raise ValueError(f"{columns} x {rows} points: at least one and at most {LARGEST_POINT_COUNT} are read")
-        link = _child(record3, "DataLink")
-        if _child(record3, "DataList") is not None:
-            stored = _listed_points(_child(record3, "DataList"))
-        else:
-            stored = _points(archive, link, _text(axes, "CZ", "DataType"), count)
-        if stored.size != count:
-            raise ValueError(f"{stored.size} points where {columns} x {rows} belong")
-        heights = float(_text(axes, "CZ", "Offset", default="0")) + stored.astype(float) * float(
-            _text(axes, "CZ", "Increment", default="1")
-        )
-        valid = _valid_points(archive, link, count)
-        if valid is not None:
-            heights[~valid] = numpy.nan
-        heights[~numpy.isfinite(heights)] = numpy.nan
+    try:
+        with zipfile.ZipFile(path) as zipped:
+            archive = _Archive(path, zipped, accept_checksum)
+            xml = archive.read("main.xml", LARGEST_XML)
+            if archive.folder + "md5checksum.hex" in zipped.namelist():
+                stated = archive.read("md5checksum.hex", LARGEST_CHECKSUM_FILE)[:32].decode("latin-1")
+                archive.check("main.xml", xml, stated)
+            root = ElementTree.fromstring(xml)
+            record1, record2, record3 = (_child(root, f"Record{number}") for number in (1, 2, 3))
+            if _text(record1, "FeatureType") != "SUR":
+                raise ValueError(f"FeatureType {_text(record1, 'FeatureType')}: a surface (SUR) is read alone")
+            axes = _child(record1, "Axes")
+            for axis in ("CX", "CY"):
+                if _text(axes, axis, "AxisType") != "I":
+                    raise ValueError(f"{axis} is not incremental: a regular grid is read alone")
+            columns, rows = (int(_text(record3, "MatrixDimension", size)) for size in ("SizeX", "SizeY"))
+            count = columns * rows
+            if not (columns > 0 and rows > 0 and count <= LARGEST_POINT_COUNT):
+                raise ValueError(f"{columns} x {rows} points: at least one and at most {LARGEST_POINT_COUNT} are read")
+            link = _child(record3, "DataLink")
+            if _child(record3, "DataList") is not None:
+                stored = _listed_points(_child(record3, "DataList"))
+            else:
+                stored = _points(archive, link, _text(axes, "CZ", "DataType"), count)
+            if stored.size != count:
+                raise ValueError(f"{stored.size} points where {columns} x {rows} belong")
+            heights = float(_text(axes, "CZ", "Offset", default="0")) + stored.astype(float) * float(
+                _text(axes, "CZ", "Increment", default="1")
+            )
+            valid = _valid_points(archive, link, count)
+            if valid is not None:
+                heights[~valid] = numpy.nan
+            heights[~numpy.isfinite(heights)] = numpy.nan
+    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ElementTree.ParseError) as error:
+        raise ValueError(f"{os.fspath(path)} is no X3P file, or it is damaged: {error}") from error
+    except OSError as error:
+        if error.errno != errno.EINVAL:  # a place before the beginning of the file, which a damaged archive names
+            raise
+        raise ValueError(f"{os.fspath(path)} is damaged: {error}") from error
     pitch_x, pitch_y = (UM_PER_M * float(_text(axes, axis, "Increment")) for axis in ("CX", "CY"))
     x0, y0 = (UM_PER_M * float(_text(axes, axis, "Offset", default="0")) for axis in ("CX", "CY"))
     coords = {"y": y0 + (rows - 1 - numpy.arange(rows)) * pitch_y, "x": x0 + numpy.arange(columns) * pitch_x}
