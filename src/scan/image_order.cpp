@@ -309,6 +309,7 @@ std::vector<std::size_t> series_by_numbers(const std::vector<std::string>& names
     for (const std::size_t k : places) {
         alike.push_back(parts_of(names[k]));
     }
+    std::vector<std::size_t> found; // as few series as possible
     for (const std::size_t counting : differing_numbers(alike)) {
         std::map<std::vector<std::string>, std::map<std::string, std::size_t>> series; // by the others; count, place
         for (std::size_t k = 0; k < alike.size(); ++k) {
@@ -323,15 +324,14 @@ std::vector<std::size_t> series_by_numbers(const std::vector<std::string>& names
             return one.second.size() >= least_of_a_series &&
                    3 * static_cast<std::size_t>(common) >= 2 * std::min(one.second.size(), counts.size());
         });
-        if (series.size() > 1 && all_alike) {
-            std::vector<std::size_t> first;
+        if (series.size() > 1 && all_alike && (found.empty() || series.size() < found.size())) {
+            found.clear();
             for (const auto& one : series) {
-                first.push_back(one.second.begin()->second);
+                found.push_back(one.second.begin()->second);
             }
-            return first;
         }
     }
-    return {};
+    return found;
 }
 
 } // namespace

@@ -39,15 +39,18 @@ PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const s
             return sum + static_cast<double>(share.weight) * static_cast<double>(share.weight);
         }));
     }
-    const double mm = std::accumulate(kept_.begin(), kept_.end(), 0.0) / images; kept_.push_back(mm);
+    mean_kept_ = std::accumulate(kept_.begin(), kept_.end(), 0.0) / images;
     // The largest value of the curve is chosen among as many places as there are means that share few images.
     const double places = std::max(1.0, images * kept_[kept_.size() / 2]);
     normal_ = normal_exceeded_with(rate / places);
 }
 
 bool PersistenceLimit::tells() const {
-    constexpr double whole = 0.9; // the ratio is 1 / f for images that are all alike
-    return independent_.deviation > 0 && independent_.largest * kept_[kept_.size() / 2] < whole;
+    // The ratio is 1 / f for images that are all alike, and two thirds of it for texture that comes into focus.
+    constexpr double whole = 0.9, most_by_chance = 0.6;
+    const double kept = kept_[kept_.size() / 2];
+    return independent_.deviation > 0 && independent_.largest * kept < whole &&
+           beyond_chance(1) * kept < most_by_chance;
 }
 
 double PersistenceLimit::beyond_chance(double window_share) const {
@@ -72,7 +75,7 @@ bool PersistenceLimit::exceeded_by(const focus::f64::CurveRecord& curve, double 
         return curve.alone >= least_energy_ &&
                curve.joint * curve.joint - independent >= persistent * (all_alike - independent);
     }
-    const double images = static_cast<double>(kept_.size() - 1);
+    const double images = static_cast<double>(kept_.size());
     const double mean = independent_.mean, beyond = beyond_chance(window_share);
     const double kept = kept_[static_cast<std::size_t>(curve.at)];
     const auto persisting = [mean](double joint, double alone, double share) {
@@ -85,7 +88,7 @@ bool PersistenceLimit::exceeded_by(const focus::f64::CurveRecord& curve, double 
     if (by_chance || !(here > 0)) {
         return false;
     }
-    const double everywhere = persisting(curve.joint_squares / images, curve.alone_sum / images, kept_.back());
+    const double everywhere = persisting(curve.joint_squares / images, curve.alone_sum / images, mean_kept_);
     // If the same pattern persisted everywhere, this is the deviation of noise of energy N and of its product with the
     // pattern.
     const double noise = kept * passing;

@@ -38,8 +38,8 @@ class PersistenceLimit {
     PersistenceLimit(const IndependentImages& independent, const std::vector<double>& neighbour_weights, int images,
                      double rate, double least_energy = 0);
 
-    // False if nothing is known of the noise, or if its images can be alike by chance. In the blank parts of compressed
-    // images only a few patterns are left, and in most images none.
+    // False if nothing is known of the noise, or if its images are so often alike by chance that texture does not
+    // exceed the limit. In the blank parts of compressed images only a few patterns are left, and in most images none.
     bool tells() const;
 
     // True if the energy that makes the curve's maximum persists: J exceeds the limit of noise alone, or half of E
@@ -59,6 +59,7 @@ class PersistenceLimit {
     double normal_ =
         0; // standard normal value exceeded as rarely as noise may exceed the limit at one place of the scan
     std::vector<double> kept_; // f of every image
+    double mean_kept_ = 0;
     double least_energy_ = 0;
 };
 
