@@ -179,11 +179,12 @@ StatedSeries by_imagej(const images::ImageStatement& statement, int pages, const
         const double unit = lines.contains("zunit")  ? unit_of("zunit")
                             : lines.contains("unit") ? unit_of("unit")
                                                      : by_tags;
-        if (unit > 0 && *spacing != 0) {
-            stated.z_step = *spacing * unit;
+        const double step = spacing.value_or(0) * unit;
+        if (unit > 0 && step != 0) {
+            stated.z_step = step;
             // The slice of height 0, counted from the first.
             const auto origin = lines.contains("zorigin") ? number_in(lines.at("zorigin")) : std::nullopt;
-            stated.z_start = origin ? std::optional(-*origin * *stated.z_step + 0.0) : std::nullopt;
+            stated.z_start = origin ? std::optional(-*origin * step + 0.0) : std::nullopt;
         } else {
             stated.doubts.push_back(
                 fmt::format("states a spacing of {} without a unit of length, which is not used", lines.at("spacing")));
