@@ -119,7 +119,7 @@ class Reader {
             if (file_.surfaces.empty() || behind_surfaces_) {
                 refuse(place(), line, line.rest, "this keyword inside a surface", "Move it below its SURF.");
             }
-            after_operand_ = false;
+            return_to_surfaces();
             if (is_one_of(keyword, of_surfaces)) {
                 take_property(file_.surfaces.back(), line);
             }
@@ -176,9 +176,14 @@ class Reader {
                              });
         const bool operand = numbers && !file_.surfaces.empty() && !line.indented;
         after_operand_ = after_operand_ || operand;
-        if (!operand) {
-            unknown_.try_emplace(line.keyword, line.number);
-        }
+        (operand ? perhaps_operands_ : unknown_).try_emplace(line.keyword, line.number);
+    }
+
+    // Within the surfaces, what looked like operands of the merit function were unknown keywords of theirs.
+    void return_to_surfaces() {
+        after_operand_ = false;
+        unknown_.merge(perhaps_operands_);
+        perhaps_operands_.clear();
     }
 
     void warn_of_unknown() const {
@@ -327,7 +332,7 @@ class Reader {
                    fmt::format("surface {}, before everything else behind the surfaces", file_.surfaces.size()),
                    "Number the surfaces from 0 without a gap.");
         }
-        after_operand_ = false;
+        return_to_surfaces();
         file_.surfaces.emplace_back();
         file_.surfaces.back().number = static_cast<int>(file_.surfaces.size()) - 1;
         file_.surfaces.back().line = line;
@@ -423,6 +428,7 @@ class Reader {
     int active_ = 1;
     std::vector<Line> operands_;         // operands of all configurations
     std::map<std::string, int> unknown_; // unknown keywords with their first lines
+    std::map<std::string, int> perhaps_operands_{};
     GlassSearch search_;
     Glasses glasses_;
 };
