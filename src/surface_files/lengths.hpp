@@ -28,6 +28,7 @@ inline constexpr std::array length_units = {std::pair{std::string_view("m"), 1e3
                                             std::pair{std::string_view("nm"), 1e-6},
                                             std::pair{std::string_view("pm"), 1e-9},
                                             std::pair{std::string_view("inch"), 25.4},
+                                            std::pair{std::string_view("inche"), 25.4},    // the plural without its s
                                             std::pair{std::string_view("\\u00B5m"), 1e-3}, // as Java programs escape it
                                             std::pair{std::string_view("micron"), 1e-3},
                                             std::pair{std::string_view("microns"), 1e-3},

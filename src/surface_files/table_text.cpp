@@ -64,29 +64,52 @@ Style style_of(std::string_view line) {
     return style;
 }
 
+// What spreadsheets write in place of a number. It begins like a remark, and is none.
+constexpr std::array<std::string_view, 7> spreadsheet_errors = {"#N/A",  "#DIV/0!", "#VALUE!", "#REF!",
+                                                                "#NUM!", "#NULL!",  "#NAME?"};
+
+bool is_remark(std::string_view line) {
+    return line.starts_with('#') &&
+           std::ranges::none_of(spreadsheet_errors, [&](std::string_view error) { return line.starts_with(error); });
+}
+
+std::string in_small_letters(std::string_view text) {
+    std::string word;
+    for (const char c : text)
+        word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return word;
+}
+
+// True for a word that programs write in place of a number, and in headers before the number that means the same.
+bool is_word_for_a_gap(std::string_view cell) {
+    constexpr std::array<std::string_view, 12> words = {"na",      "null", "none",   "bad",       "masked",  "invalid",
+                                                        "missing", "void", "nodata", "undefined", "no data", "no_data"};
+    return std::ranges::find(words, in_small_letters(cell)) != words.end();
+}
+
 // True for what programs write in place of a number that was not measured: nothing, dashes and stars, or one of their
 // words.
 bool is_gap(std::string_view cell) {
     if (cell.find_first_not_of("*-") == std::string_view::npos)
         return true;
-    std::string word;
-    for (const char c : cell.substr(cell[0] == '-' || cell[0] == '+' ? 1 : 0))
-        word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    constexpr std::array<std::string_view, 24> words = {
-        "nan",     "inf",     "infinity", "na",     "n/a",     "#n/a",      "null",      "none",
-        "bad",     "masked",  "invalid",  "void",   "missing", "undefined", "nodata",    "no data",
-        "no_data", "1.#qnan", "1.#snan",  "1.#ind", "1.#inf",  "nan(ind)",  "nan(snan)", "-nan(ind)"};
-    return std::ranges::find(words, word) != words.end();
+    constexpr std::array<std::string_view, 10> forms = {"nan",     "inf",    "infinity", "n/a",      "1.#qnan",
+                                                        "1.#snan", "1.#ind", "1.#inf",   "nan(ind)", "nan(snan)"};
+    const std::string form = in_small_letters(cell.substr(cell[0] == '-' || cell[0] == '+' ? 1 : 0));
+    return std::ranges::find(forms, form) != forms.end() || is_word_for_a_gap(cell) ||
+           std::ranges::find(spreadsheet_errors, cell) != spreadsheet_errors.end();
 }
 
-// A line of data may begin with a gap, which is not a heading's word.
+// A line of data may begin with a gap, which is not a heading's word, if nothing but numbers and gaps follows. Of two
+// cells a word and a number are a statement: "NODATA -9999".
 bool is_data(std::string_view line, const Style& style) {
     const auto cells = cells_of(line, style.separator);
     const auto is_number = [&](std::string_view cell) { return number_of(cell, style).has_value(); };
-    const bool numbers = std::ranges::any_of(cells, is_number);
-    const bool gaps = std::ranges::all_of(cells, is_gap) &&
-                      std::ranges::any_of(cells, [](std::string_view cell) { return !cell.empty(); });
-    return gaps || (numbers && (is_number(cells.front()) || is_gap(cells.front())));
+    if (is_number(cells.front()))
+        return true;
+    const bool statement = cells.size() <= 2 && is_word_for_a_gap(cells.front());
+    const bool any = std::ranges::any_of(cells, [](std::string_view cell) { return !cell.empty(); });
+    return any && !statement &&
+           std::ranges::all_of(cells, [&](std::string_view cell) { return is_number(cell) || is_gap(cell); });
 }
 
 // Appends a row, whose columns are as many as those of the rows before. An empty cell at the end of a line looks like a
@@ -156,7 +179,7 @@ TableText parse_table_text(std::string_view text, const std::filesystem::path& p
         if (content.empty())
             continue;
         const Style own = style.value_or(style_of(content));
-        if (content.starts_with('#') || (!style && !is_data(content, own))) {
+        if (is_remark(content) || (!style && !is_data(content, own))) {
             table.header.push_back(content);
             continue;
         }
@@ -173,7 +196,8 @@ TableText parse_table_text(std::string_view text, const std::filesystem::path& p
                                   .remedy = "Export the table anew, with one separator and one decimal sign."});
             row.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
         }
-        if (!rows.append(row, own.separator != ' ' && content.ends_with(own.separator)))
+        const std::string_view whole = line.substr(0, line.find_last_not_of(" \r") + 1);
+        if (!rows.append(row, own.separator != ' ' && whole.ends_with(own.separator)))
             throw InputError({.where = {.file = file.file(), .line = number},
                               .key = "columns",
                               .found = fmt::format("{}", row.size()),

@@ -533,8 +533,10 @@ TEST(Zmx, DecimalCommasOfGlassesAreRead) {
         const auto lens = parsed(replaced(file_text("singlet.zmx"), "GLAS N-BK7", line));
         return lens.prescription.surfaces[0].medium_after.index(0.5875618);
     };
-    EXPECT_NEAR(glass("GLAS NONE-SUCH 0 0 1,62 36,3"), 1.62, 1e-6);
-    EXPECT_NEAR(glass("GLAS ___BLANK 1 0 1,62 36,3"), 1.62, 1e-6);
+    const double with_points = glass("GLAS NONE-SUCH 0 0 1.62 36.3");
+    EXPECT_NEAR(with_points, 1.62, 1e-5);
+    EXPECT_EQ(glass("GLAS NONE-SUCH 0 0 1,62 36,3"), with_points);
+    EXPECT_EQ(glass("GLAS ___BLANK 1 0 1,62 36,3"), with_points);
     for (const char* no_glass : {"000000", "517003", "000642"}) {
         EXPECT_FALSE(glass_of_code(no_glass).has_value()) << no_glass;
     }

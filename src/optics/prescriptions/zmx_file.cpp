@@ -119,7 +119,7 @@ class Reader {
             if (file_.surfaces.empty() || behind_surfaces_) {
                 refuse(place(), line, line.rest, "this keyword inside a surface", "Move it below its SURF.");
             }
-            after_operand_ = false;
+            return_to_surfaces();
             if (is_one_of(keyword, of_surfaces)) {
                 take_property(file_.surfaces.back(), line);
             }
@@ -159,7 +159,9 @@ class Reader {
             configurations_ = std::max(1, integer_at(place(), line, 0, 0, 1000));
             active_ = line.words.size() > 1 ? std::max(1, integer_at(place(), line, 1, 0, configurations_)) : 1;
         } else if (is_one_of(keyword, without_geometry)) {
-            // Notes, tolerances and similar lines may stand anywhere in the file.
+            // Notes and similar lines may stand anywhere in the file, blank operands and tolerances behind the
+            // surfaces.
+            behind_surfaces_ = behind_surfaces_ || (!file_.surfaces.empty() && (keyword == "BLNK" || keyword == "TOL"));
         } else if (configurations_ > 1 && line.words.size() > 2) {
             operands_.push_back(line);
         } else {
@@ -176,9 +178,14 @@ class Reader {
                              });
         const bool operand = numbers && !file_.surfaces.empty() && !line.indented;
         after_operand_ = after_operand_ || operand;
-        if (!operand) {
-            unknown_.try_emplace(line.keyword, line.number);
-        }
+        (operand ? perhaps_operands_ : unknown_).try_emplace(line.keyword, line.number);
+    }
+
+    // Within the surfaces, what looked like operands of the merit function were unknown keywords of theirs.
+    void return_to_surfaces() {
+        after_operand_ = false;
+        unknown_.merge(perhaps_operands_);
+        perhaps_operands_.clear();
     }
 
     void warn_of_unknown() const {
@@ -327,7 +334,7 @@ class Reader {
                    fmt::format("surface {}, before everything else behind the surfaces", file_.surfaces.size()),
                    "Number the surfaces from 0 without a gap.");
         }
-        after_operand_ = false;
+        return_to_surfaces();
         file_.surfaces.emplace_back();
         file_.surfaces.back().number = static_cast<int>(file_.surfaces.size()) - 1;
         file_.surfaces.back().line = line;
@@ -423,6 +430,7 @@ class Reader {
     int active_ = 1;
     std::vector<Line> operands_;         // operands of all configurations
     std::map<std::string, int> unknown_; // unknown keywords with their first lines
+    std::map<std::string, int> perhaps_operands_{};
     GlassSearch search_;
     Glasses glasses_;
 };
