@@ -524,11 +524,14 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         }
     }
     // The average of the images moves maxima where their brightness changes (brightness_pull.hpp).
-    Grid<double> slopes = result.height.height;
-    for (double& height : slopes.values) {
-        height = (height - z_.front()) / step;
-    }
-    slopes = brightness_->slopes(slopes, figures.curve_width_steps);
+    const auto in_steps = [&] {
+        Grid<double> heights = result.height.height;
+        for (double& height : heights.values) {
+            height = (height - z_.front()) / step;
+        }
+        return heights;
+    };
+    const Grid<double> slopes = brightness_->slopes(in_steps(), figures.curve_width_steps);
     const double averaged_by = figures.smoothing_steps;
     for (std::size_t pixel = 0; pixel < slopes.values.size(); ++pixel) {
         if (const double slope = slopes.values[pixel]; std::isfinite(slope)) {
@@ -559,7 +562,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         height_uncertainty(result.height.height, result.height_noise, options_.window_px, options_.window_shape,
                            grain_correlation(result.all_in_focus, measure_, window_));
     const HiddenLevels levels(levels_of_probes.get(), result.height.height, step, window_.radius());
-    result.brightness_pull = brightness_->pull(slopes, figures.curve_width_steps, step_of_heights);
+    result.brightness_pull = brightness_->pull(in_steps(), figures.curve_width_steps, step_of_heights);
     double measured_pixels = 0;
     for (int row = 0; row < rows_; ++row) {
         for (int column = 0; column < columns_; ++column) {

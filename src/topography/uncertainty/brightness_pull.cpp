@@ -13,6 +13,11 @@ namespace {
 constexpr int most_a_side = 128;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
+// Linear between two values; NaN if one of them is (std::lerp() may give the other one).
+double mixed(double one, double other, double share) {
+    return one + share * (other - one);
+}
+
 // The mean of the finite values of every block, NaN where there is none.
 Grid<double> means_of(const Grid<double>& map, int side, int columns, int rows) {
     Grid<double> sums(columns, rows), counts(columns, rows);
@@ -30,28 +35,25 @@ Grid<double> means_of(const Grid<double>& map, int side, int columns, int rows) 
     return sums;
 }
 
-// The mean product of the pairs of neighbours, along x and along y, among a block and the eight around it.
+// The mean product of neighbours among the seven blocks in a row or in a column about a block, whichever is larger:
+// ridges have errors in common along them, and other ones across. At least 0.
 double common_square(const Grid<double>& pulls, int column, int row) {
-    double sum = 0, pairs = 0;
-    const auto add = [&](double one, double other) {
-        if (std::isfinite(one * other)) {
-            sum += one * other;
-            pairs += 1;
+    constexpr int reach = 3;
+    const auto along = [&](int dx, int dy) {
+        double sum = 0, pairs = 0;
+        for (int k = -reach; k < reach; ++k) {
+            const int x = column + k * dx, y = row + k * dy;
+            if (x < 0 || y < 0 || x + dx >= pulls.columns || y + dy >= pulls.rows) {
+                continue;
+            }
+            if (const double product = pulls(x, y) * pulls(x + dx, y + dy); std::isfinite(product)) {
+                sum += product;
+                pairs += 1;
+            }
         }
+        return pairs > 0 ? sum / pairs : 0;
     };
-    const int left = std::max(0, column - 1), right = std::min(pulls.columns - 1, column + 1);
-    const int lower = std::max(0, row - 1), upper = std::min(pulls.rows - 1, row + 1);
-    for (int y = lower; y <= upper; ++y) {
-        for (int x = left; x <= right; ++x) {
-            if (x < right) {
-                add(pulls(x, y), pulls(x + 1, y));
-            }
-            if (y < upper) {
-                add(pulls(x, y), pulls(x, y + 1));
-            }
-        }
-    }
-    return pairs > 0 ? std::max(0.0, sum / pairs) : 0;
+    return std::max({0.0, along(1, 0), along(0, 1)});
 }
 
 } // namespace
@@ -122,14 +124,27 @@ std::vector<std::vector<float>> BrightnessOfBlocks::slopes_of_blocks(int reach) 
     return result;
 }
 
+std::optional<int> BrightnessOfBlocks::reach_of(double width) const {
+    const int reach = std::max(1, static_cast<int>(std::lround(width)));
+    return width > 0 && static_cast<int>(images_.size()) >= 2 * reach + 2 ? std::optional(reach) : std::nullopt;
+}
+
+template <class AtImage>
+double BrightnessOfBlocks::between_images(double height, const AtImage& at_image) const {
+    if (!(height >= 0 && height <= static_cast<double>(images_.size() - 1))) {
+        return unknown;
+    }
+    const auto below = std::min(static_cast<std::size_t>(height), images_.size() - 2);
+    return mixed(at_image(below), at_image(below + 1), height - static_cast<double>(below));
+}
+
 Grid<double> BrightnessOfBlocks::slopes(const Grid<double>& height, double width) const {
     Grid<double> result(height.columns, height.rows, unknown);
-    const auto images = static_cast<int>(images_.size());
-    const int reach = std::max(1, static_cast<int>(std::lround(width)));
-    if (!(width > 0) || images < 2 * reach + 2) {
+    const auto reach = reach_of(width);
+    if (!reach) {
         return result;
     }
-    const auto of_blocks = slopes_of_blocks(reach);
+    const auto of_blocks = slopes_of_blocks(*reach);
     // The two blocks whose middles lie around a pixel, and the share of the second.
     struct Between {
         int first, second;
@@ -145,31 +160,32 @@ Grid<double> BrightnessOfBlocks::slopes(const Grid<double>& height, double width
         for (int row = from; row < end; ++row) {
             const Between y = between(row, sums_.rows);
             for (int column = 0; column < height.columns; ++column) {
-                const double at = height(column, row);
-                if (!(at >= 0 && at <= images - 1)) {
-                    continue;
-                }
                 const Between x = between(column, sums_.columns);
-                const auto below = std::min(static_cast<std::size_t>(at), images_.size() - 2);
-                const auto of_image = [&](std::size_t image) {
+                result(column, row) = between_images(height(column, row), [&](std::size_t image) {
                     const std::vector<float>& slopes = of_blocks[image];
                     const auto along = [&](int block_row) {
-                        return std::lerp(static_cast<double>(slopes[sums_.index(x.first, block_row)]),
-                                         static_cast<double>(slopes[sums_.index(x.second, block_row)]), x.share);
+                        return mixed(static_cast<double>(slopes[sums_.index(x.first, block_row)]),
+                                     static_cast<double>(slopes[sums_.index(x.second, block_row)]), x.share);
                     };
-                    return std::lerp(along(y.first), along(y.second), y.share);
-                };
-                result(column, row) = std::lerp(of_image(below), of_image(below + 1), at - static_cast<double>(below));
+                    return mixed(along(y.first), along(y.second), y.share);
+                });
             }
         }
     });
     return result;
 }
 
-BrightnessPull BrightnessOfBlocks::pull(const Grid<double>& slopes, double width, double step) const {
-    Grid<double> pulls = means_of(slopes, side_, sums_.columns, sums_.rows);
-    for (double& pull : pulls.values) {
-        pull *= width * width;
+BrightnessPull BrightnessOfBlocks::pull(const Grid<double>& height, double width, double step) const {
+    const auto reach = reach_of(width);
+    if (!reach) {
+        return {};
+    }
+    Grid<double> pulls = means_of(height, side_, sums_.columns, sums_.rows);
+    const auto of_blocks = slopes_of_blocks(*reach);
+    for (std::size_t block = 0; block < pulls.values.size(); ++block) {
+        pulls.values[block] = width * width * between_images(pulls.values[block], [&](std::size_t image) {
+                                  return static_cast<double>(of_blocks[image][block]);
+                              });
     }
     BrightnessPull result{.side = side_, .blocks = Grid<double>(pulls.columns, pulls.rows)};
     for (int row = 0; row < pulls.rows; ++row) {

@@ -23,7 +23,7 @@
 #include "core/mathematics/grid.hpp"
 #include "topography/focus_measure.hpp"
 
-#include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace vkfv::topography {
@@ -53,14 +53,19 @@ class BrightnessOfBlocks {
     // where there is no light.
     Grid<double> slopes(const Grid<double>& height, double width) const;
 
-    // The uncertainty by these slopes. width: standard deviation of the focus curves, in steps; step: of the scan, in
-    // the unit of the result. Its square is the mean product of the pairs of neighbours among a block and those around
-    // it, or 0 if that is negative.
-    BrightnessPull pull(const Grid<double>& slopes, double width, double step) const;
+    // The uncertainty of these heights, each block's by the slope at its mean height. width: standard deviation of the
+    // focus curves, in steps; step: of the scan, in the unit of the result. Its square is the mean product of
+    // neighbours among seven blocks in a row or a column, whichever is larger, or 0 if both are negative.
+    BrightnessPull pull(const Grid<double>& height, double width, double step) const;
 
   private:
+    // Images on either side for the line of a slope; empty where the curves have no form or the scan is too short.
+    std::optional<int> reach_of(double width) const;
     // Of each block, at each image.
     std::vector<std::vector<float>> slopes_of_blocks(int reach) const;
+    // Linear between images; NaN off the scan.
+    template <class AtImage>
+    double between_images(double height, const AtImage& at_image) const;
 
     int columns_, rows_, side_;
     Grid<double> sums_;                      // of the image that is being added
