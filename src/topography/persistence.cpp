@@ -46,11 +46,12 @@ PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const s
 }
 
 bool PersistenceLimit::tells() const {
-    // The ratio is 1 / f for images that are all alike, and two thirds of it for texture that comes into focus.
-    constexpr double whole = 0.9, most_by_chance = 0.6;
+    // The ratio is 1 / f for images that are all alike. Texture that comes into focus has two thirds of this where
+    // images are averaged, and nine tenths where two neighbours alone are compared, whose f is 3 / 8.
+    constexpr double whole = 0.9, of_averaged = 0.66, of_neighbours = 0.95;
     const double kept = kept_[kept_.size() / 2];
     return independent_.deviation > 0 && independent_.largest * kept < whole &&
-           beyond_chance(1) * kept < most_by_chance;
+           (independent_.mean + beyond_chance(1)) * kept < (3 * kept < 1 ? of_averaged : of_neighbours);
 }
 
 double PersistenceLimit::beyond_chance(double window_share) const {
