@@ -423,7 +423,7 @@ class Reader {
     }
 
     File file_;
-    bool behind_surfaces_ = false;     // behind MNUM
+    bool behind_surfaces_ = false;     // behind BLNK, TOL or MNUM
     bool after_operand_ = false;       // after a line that is probably an operand of the merit function
     std::optional<int> configuration_; // the requested configuration
     int configurations_ = 1;
