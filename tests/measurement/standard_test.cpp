@@ -41,19 +41,21 @@ TEST(StandardDimensions, TellNominalTrueAndMeasuredInTheirUnit) {
     EXPECT_NE(dimensions_text(found).find("5.2 um"), std::string::npos);
 }
 
-const topography::FocusWindow window_of_groove(7, topography::WindowShape::box);
+topography::FocusWindow seven_points() {
+    return {7, topography::WindowShape::box};
+}
 
 // Upper levels and ground each come nearer to the mean by the uncertainty of a height.
 TEST(StandardDimensions, AreUncertainByBrightnessAsTheirHeightsAre) {
     const topography::BrightnessPull pull{.side = 160, .blocks = Grid<double>(1, 1, 0.0002)};
     const auto found = standard_dimensions(groove, groove_of(0.0052), groove_of(0.00505),
-                                           FocusEffects{.pull = &pull, .window = window_of_groove});
+                                           FocusEffects{.pull = &pull, .window = seven_points()});
     EXPECT_NEAR(json_of(found)[0]["brightness_uncertainty"].get<double>(), 0.4, 1e-9);
     EXPECT_NEAR(json_of(found)[0]["measured"].get<double>(), 5.2, 1e-9);
     EXPECT_NE(dimensions_text(found).find("+- 0.4 by brightness that changes with focus"), std::string::npos);
     const topography::BrightnessPull none;
     const auto sure = standard_dimensions(groove, groove_of(0.0052), groove_of(0.00505),
-                                          FocusEffects{.pull = &none, .window = window_of_groove});
+                                          FocusEffects{.pull = &none, .window = seven_points()});
     EXPECT_EQ(sure[0].brightness_uncertainty, 0);
     const auto unknown = standard_dimensions(groove, groove_of(0.0052), groove_of(0.00505));
     EXPECT_TRUE(json_of(unknown)[0]["brightness_uncertainty"].is_null());
@@ -74,7 +76,7 @@ TEST(StandardDimensions, AreUncertainByWhatTheWindowAverages) {
     }
     wave.height(30, 20) = surface::undefined;
     const topography::BrightnessPull none;
-    const FocusEffects effects{.pull = &none, .window = window_of_groove};
+    const FocusEffects effects{.pull = &none, .window = seven_points()};
     const auto found =
         standard_dimensions(dimensions::Sinusoid{.frame = {}, .amplitude = 0.004, .period = 0.04}, wave, {}, effects);
     const double lost = 0.004 * (1 - left);
