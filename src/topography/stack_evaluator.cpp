@@ -523,21 +523,6 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
             end_uncertainty.values[pixel] = step_of_heights * (by_width.place(found, width + wider) - place);
         }
     }
-    // The average of the images moves maxima where their brightness changes (brightness_pull.hpp).
-    const auto in_steps = [&] {
-        Grid<double> heights = result.height.height;
-        for (double& height : heights.values) {
-            height = (height - z_.front()) / step;
-        }
-        return heights;
-    };
-    const Grid<double> slopes = brightness_->slopes(in_steps(), figures.curve_width_steps);
-    const double averaged_by = figures.smoothing_steps;
-    for (std::size_t pixel = 0; pixel < slopes.values.size(); ++pixel) {
-        if (const double slope = slopes.values[pixel]; std::isfinite(slope)) {
-            result.height.height.values[pixel] += step_of_heights * averaged_by * averaged_by * slope;
-        }
-    }
     const auto freed = std::async(std::launch::async, [planes = std::move(planes_)]() mutable { planes.reset(); });
     result.curves = curves_of(stack, of_curves, height_at);
     for (std::size_t point = 0; point < curve_pixels_.size() && point < result.curves.peaks.size(); ++point) {
@@ -562,7 +547,13 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         height_uncertainty(result.height.height, result.height_noise, options_.window_px, options_.window_shape,
                            grain_correlation(result.all_in_focus, measure_, window_));
     const HiddenLevels levels(levels_of_probes.get(), result.height.height, step, window_.radius());
-    result.brightness_pull = brightness_->pull(in_steps(), figures.curve_width_steps, step_of_heights);
+    Grid<double> heights_in_steps = result.height.height;
+    for (double& height : heights_in_steps.values) {
+        height = (height - z_.front()) / step;
+    }
+    const double width = figures.curve_width_steps; // 0 of curves without a form
+    result.brightness_pull = brightness_->pull(
+        heights_in_steps, width > 0 ? std::hypot(width, figures.smoothing_steps) : 0, step_of_heights);
     double measured_pixels = 0;
     for (int row = 0; row < rows_; ++row) {
         for (int column = 0; column < columns_; ++column) {

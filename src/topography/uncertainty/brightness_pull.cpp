@@ -1,7 +1,5 @@
 #include "topography/uncertainty/brightness_pull.hpp"
 
-#include "core/threads/parallel_rows.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -136,43 +134,6 @@ double BrightnessOfBlocks::between_images(double height, const AtImage& at_image
     }
     const auto below = std::min(static_cast<std::size_t>(height), images_.size() - 2);
     return mixed(at_image(below), at_image(below + 1), height - static_cast<double>(below));
-}
-
-Grid<double> BrightnessOfBlocks::slopes(const Grid<double>& height, double width) const {
-    Grid<double> result(height.columns, height.rows, unknown);
-    const auto reach = reach_of(width);
-    if (!reach) {
-        return result;
-    }
-    const auto of_blocks = slopes_of_blocks(*reach);
-    // The two blocks whose middles lie around a pixel, and the share of the second.
-    struct Between {
-        int first, second;
-        double share;
-    };
-    const auto between = [&](int pixel, int blocks) {
-        const double place = (pixel + 0.5) / side_ - 0.5;
-        const int first = std::clamp(static_cast<int>(std::floor(place)), 0, blocks - 1);
-        return Between{
-            .first = first, .second = std::min(first + 1, blocks - 1), .share = std::clamp(place - first, 0.0, 1.0)};
-    };
-    parallel_rows(height.columns, height.rows, [&](int from, int end) {
-        for (int row = from; row < end; ++row) {
-            const Between y = between(row, sums_.rows);
-            for (int column = 0; column < height.columns; ++column) {
-                const Between x = between(column, sums_.columns);
-                result(column, row) = between_images(height(column, row), [&](std::size_t image) {
-                    const std::vector<float>& slopes = of_blocks[image];
-                    const auto along = [&](int block_row) {
-                        return mixed(static_cast<double>(slopes[sums_.index(x.first, block_row)]),
-                                     static_cast<double>(slopes[sums_.index(x.second, block_row)]), x.share);
-                    };
-                    return mixed(along(y.first), along(y.second), y.share);
-                });
-            }
-        }
-    });
-    return result;
 }
 
 BrightnessPull BrightnessOfBlocks::pull(const Grid<double>& height, double width, double step) const {

@@ -1,4 +1,4 @@
-// Heights where brightness changes with focus: what is corrected, and what is uncertain.
+// The uncertainty of heights where brightness changes with focus.
 //
 // A focus measure is divided by the brightness of its window, so that an uneven light cancels. Let B(z) be this
 // brightness, g = d ln B / dz, and let the texture alone make a curve exp(-(z - h)^2 / (2 s^2)). If the texture's
@@ -7,16 +7,15 @@
 //
 // B changes with z where the directions of the light differ from place to place, as on curved surfaces that scatter
 // narrowly: their light runs together or apart. Texture of glints then follows in part, since each direction has a
-// pattern of its own, whose energies add; texture of reflectance follows. How far it does is not known from a stack, so
-// s^2 g is a standard uncertainty, which all windows of one slope and curvature have in common: repeating and averaging
-// do not reduce it.
+// pattern of its own, whose energies add; texture of reflectance follows. How far it does is not known from a stack.
 //
 // Images are averaged along z before the measure is divided. The average, a Gaussian of the standard deviation a,
-// widens the curve to s^2 + a^2 and leaves its middle, while B keeps its slope: all maxima move by -a^2 g, whatever the
-// texture does. This is known, and heights are corrected for it.
+// widens the curve to s^2 + a^2, while B keeps its slope: maxima move by -a^2 g if the texture follows, and by
+// -(s^2 + a^2) g if it does not. So (s^2 + a^2) g is a standard uncertainty, which all windows of one slope and
+// curvature have in common: repeating and averaging do not reduce it.
 //
 // Brightness also changes with z as single grains leave a window. This differs from window to window and is seen in
-// their disagreement (height_uncertainty.hpp). So for the uncertainty products of s^2 g of neighbouring windows count,
+// their disagreement (height_uncertainty.hpp). So for the uncertainty products of this of neighbouring windows count,
 // in which such changes average to zero.
 #pragma once
 
@@ -46,16 +45,13 @@ class BrightnessOfBlocks {
     // Adds an image of that size.
     void add(const Channels& image);
 
-    // d ln B / dz at every height, a step; NaN where it is unknown. height: the map, in steps of the scan from its
-    // first image, NaN where it is unknown. The slope at an image is that of the least-squares line over the images
-    // within `width` steps of it, interpolated between images and between the middles of blocks; brightness is relative
-    // to that of the whole image, so that a lamp's flicker does not count. It is unknown near the ends of the scan and
-    // where there is no light.
-    Grid<double> slopes(const Grid<double>& height, double width) const;
-
-    // The uncertainty of these heights, each block's by the slope at its mean height. width: standard deviation of the
-    // focus curves, in steps; step: of the scan, in the unit of the result. Its square is the mean product of
-    // neighbours among seven blocks in a row or a column, whichever is larger, or 0 if both are negative.
+    // The uncertainty of these heights, each block's by d ln B / dz at its mean height: the slope of the least-squares
+    // line over the images within `width` steps; brightness is relative to that of the whole image, so that a lamp's
+    // flicker does not count. It is 0 near the ends of the scan and where there is no light. height: the map, in steps
+    // of the scan from its first image, NaN where it is unknown; width: standard deviation of the averaged focus
+    // curves, in steps, 0 of curves without a form; step: of the scan, in the unit of the result. Its square is the
+    // mean product of neighbours among seven blocks in a row or a column, whichever is larger, or 0 if both are
+    // negative.
     BrightnessPull pull(const Grid<double>& height, double width, double step) const;
 
   private:
