@@ -159,9 +159,10 @@ class Reader {
             configurations_ = std::max(1, integer_at(place(), line, 0, 0, 1000));
             active_ = line.words.size() > 1 ? std::max(1, integer_at(place(), line, 1, 0, configurations_)) : 1;
         } else if (is_one_of(keyword, without_geometry)) {
-            // Notes and similar lines may stand anywhere in the file, blank operands and tolerances behind the
-            // surfaces.
-            behind_surfaces_ = behind_surfaces_ || (!file_.surfaces.empty() && (keyword == "BLNK" || keyword == "TOL"));
+            // Notes and similar lines may stand anywhere in the file. Blank operands and tolerances without indent
+            // stand behind the surfaces.
+            behind_surfaces_ = behind_surfaces_ ||
+                               (!line.indented && !file_.surfaces.empty() && (keyword == "BLNK" || keyword == "TOL"));
         } else if (configurations_ > 1 && line.words.size() > 2) {
             operands_.push_back(line);
         } else {
