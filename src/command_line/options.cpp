@@ -1,6 +1,7 @@
 // Options that several commands take.
 #include "command_line/command.hpp"
 
+#include "core/parsing/text_encoding.hpp"
 #include "surface/band.hpp"
 
 #include <fmt/format.h>
@@ -13,11 +14,17 @@ namespace vkfv::command_line {
 
 namespace {
 
+// A text of the command line as TOML. Bytes that are no UTF-8 stay as they are, so that the reader of overrides refuses
+// them.
+std::string toml_text_of(const std::string& value) {
+    return is_utf8(value) ? toml_quoted(value) : value;
+}
+
 // Stores a value as an override of the configuration's key. An empty value overrides nothing.
 Take<std::string> to_key(const std::string& option, const std::string& key, bool text) {
     return [option, key, text](CommandOptions& options, const std::string& value) {
         if (!value.empty()) {
-            options.overrides.push_back({key, text ? toml_quoted(value) : value, option});
+            options.overrides.push_back({key, text ? toml_text_of(value) : value, option});
         }
     };
 }
@@ -92,7 +99,7 @@ Option out_option(std::string description) {
     const auto take = [](CommandOptions& options, const std::string& path) {
         if (!path.empty()) {
             options.out = path;
-            options.overrides.push_back({"output.directory", toml_quoted(path), "--out"});
+            options.overrides.push_back({"output.directory", toml_text_of(path), "--out"});
         }
     };
     return {.name = "--out",

@@ -72,17 +72,6 @@ std::optional<ByteOrder> order_of_utf16(std::string_view bytes) {
     return nuls[0] > 0 ? ByteOrder::big : ByteOrder::little;
 }
 
-bool is_utf8(std::string_view text) {
-    while (!text.empty()) {
-        const std::size_t bytes = first_character(text).bytes;
-        if (bytes == 0) {
-            return false;
-        }
-        text.remove_prefix(bytes);
-    }
-    return true;
-}
-
 std::string in_utf8(std::string_view bytes) {
     if (const auto order = order_of_utf16(bytes)) {
         const bool marked = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
@@ -103,6 +92,17 @@ std::string in_utf8(std::string_view bytes) {
 }
 
 } // namespace
+
+bool is_utf8(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t bytes = first_character(text).bytes;
+        if (bytes == 0) {
+            return false;
+        }
+        text.remove_prefix(bytes);
+    }
+    return true;
+}
 
 std::string as_utf8(std::string_view bytes) {
     std::string text = in_utf8(bytes);

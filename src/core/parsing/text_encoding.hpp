@@ -13,4 +13,7 @@ namespace vkfv {
 // them.
 std::string as_utf8(std::string_view bytes);
 
+// True for well-formed UTF-8.
+bool is_utf8(std::string_view text);
+
 } // namespace vkfv

@@ -1,6 +1,7 @@
 #include "core/toml/toml_document.hpp"
 
 #include "core/files/file.hpp"
+#include "core/parsing/text_encoding.hpp"
 #include "core/toml/toml_nesting.hpp"
 
 #include <fmt/format.h>
@@ -116,6 +117,13 @@ toml::table parse_override(const TomlOverride& given) {
         !given.key.empty() && given.key.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                                                           "0123456789_-.") == std::string::npos;
     if (key_is_plain) {
+        if (!is_utf8(given.value)) {
+            throw InputError({.where = {.file = given.origin},
+                              .key = given.key,
+                              .found = "bytes that are no UTF-8",
+                              .expected = "text in UTF-8, as a configuration is written in",
+                              .remedy = "Give another text; rename the folder or file whose name this is."});
+        }
         try {
             // A value with further lines is not parsed as TOML, as they could set other keys.
             if (given.value.find('\n') == std::string::npos) {
@@ -123,15 +131,7 @@ toml::table parse_override(const TomlOverride& given) {
             }
         } catch (const toml::parse_error&) {
         }
-        try {
-            return as_document(toml_quoted(given.value));
-        } catch (const toml::parse_error&) {
-            throw InputError({.where = {.file = given.origin},
-                              .key = given.key,
-                              .found = "bytes that are no UTF-8",
-                              .expected = "text in UTF-8, as a configuration is written in",
-                              .remedy = "Give another text; rename the folder or file whose name this is."});
-        }
+        return as_document(toml_quoted(given.value));
     }
     throw InputError({.where = {.file = given.origin},
                       .key = "",
