@@ -91,7 +91,6 @@ std::vector<Case> cases() {
             {.name = "8 bits", .noise = wide, .deviation = 0.004, .grey_value = 1.0 / 120},
             {.name = "8 bits, little noise", .noise = pulse, .deviation = 0.002, .grey_value = 1.0 / 120},
             {.name = "dust", .noise = wide, .pattern = 0.01},
-            {.name = "compressed", .noise = strong, .grey_value = 1.0 / 120, .quantum = 0.05},
             {.name = "compressed little", .noise = wide, .grey_value = 1.0 / 120, .quantum = 0.02}};
 }
 
