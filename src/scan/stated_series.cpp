@@ -172,8 +172,8 @@ StatedSeries by_imagej(const images::ImageStatement& statement, int pages, const
     take_pitch(stated, statement, along_x, along_y);
     const auto spacing = lines.contains("spacing") ? number_in(lines.at("spacing")) : std::nullopt;
     if (lines.contains("spacing") && !spacing) {
-        stated.doubts.push_back(
-            fmt::format("states a spacing of \"{}\", which is no number and is not used", lines.at("spacing").substr(0, 40)));
+        stated.doubts.push_back(fmt::format("states a spacing of \"{}\", which is no number and is not used",
+                                            lines.at("spacing").substr(0, 40)));
     }
     if (spacing) {
         const double unit = lines.contains("zunit")  ? unit_of("zunit")
