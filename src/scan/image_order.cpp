@@ -190,10 +190,12 @@ std::optional<std::vector<int>> steps_of(const std::vector<double>& values, doub
         single += multiple == 1 ? 1 : 0;
         steps.push_back(steps.back() + static_cast<int>(multiple));
     }
-    // More images missing than there are means other series, or a camera's counter that began again.
-    const auto present = static_cast<int>(values.size());
+    // If far more images are missing than there are, the numbers are those of several series, or of a camera's counter
+    // that began again.
+    constexpr double most_missing = 10; // for each image that is there
+    const auto present = static_cast<double>(values.size());
     if (static_cast<double>(single) < share_of_a_series * static_cast<double>(differences.size()) ||
-        steps.back() + 1 - present > present) {
+        steps.back() + 1 - present > most_missing * present) {
         return std::nullopt;
     }
     step = (values.back() - values.front()) / steps.back();
