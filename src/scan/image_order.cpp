@@ -191,7 +191,8 @@ std::optional<std::vector<int>> steps_of(const std::vector<double>& values, doub
         steps.push_back(steps.back() + static_cast<int>(multiple));
     }
     // If far more images are missing than there are, the numbers are those of several series, or of a camera's counter
-    // that began again.
+    // that began again. A folder with a gap misses about as many images as it has, a counter of four digits thousands:
+    // the limit lies between, and is not derived.
     constexpr double most_missing = 10; // for each image that is there
     const auto present = static_cast<double>(values.size());
     if (static_cast<double>(single) < share_of_a_series * static_cast<double>(differences.size()) ||

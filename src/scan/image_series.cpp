@@ -92,7 +92,8 @@ void leave_out(std::vector<std::filesystem::path>& files, const std::vector<bool
     files = std::move(rest);
 }
 
-// What each file states. Files that are no images are left out with a warning if at least four of five are.
+// Reads the statement of each file. Files that are no images are left out, with a warning, if at least four of five
+// files are images; else the first refusal is thrown.
 std::vector<images::ImageStatement> statements_of(std::vector<std::filesystem::path>& files,
                                                   const std::filesystem::path& folder) {
     std::vector<images::ImageStatement> statements;

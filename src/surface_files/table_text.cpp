@@ -64,7 +64,7 @@ Style style_of(std::string_view line) {
     return style;
 }
 
-// What spreadsheets write in place of a number. It begins like a remark, and is none.
+// The errors that spreadsheets write in place of a number. They begin with the '#' of a remark, but are cells.
 constexpr std::array<std::string_view, 7> spreadsheet_errors = {"#N/A",  "#DIV/0!", "#VALUE!", "#REF!",
                                                                 "#NUM!", "#NULL!",  "#NAME?"};
 

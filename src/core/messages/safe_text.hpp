@@ -13,7 +13,7 @@ namespace vkfv {
 // lines and paragraphs, and bytes that are not UTF-8. Ends of lines and tabs are kept.
 std::string safe_text(std::string_view text);
 
-// The same for a text that must stay in its line, its cell or its name: ends of lines and tabs are escaped too.
+// safe_text() for a text that must stay in its line, its cell or its name: ends of lines and tabs are escaped too.
 std::string safe_line(std::string_view text);
 
 // The text, in a line, as a cell of a CSV file (RFC 4180): in quotes where it needs them.
@@ -30,7 +30,7 @@ Utf8Character first_character(std::string_view text);
 // True for a character that safe_line() escapes.
 bool is_unsafe_character(std::uint32_t code);
 
-// Prints on standard output; safe_text() of it.
+// Prints safe_text() of a text on standard output.
 void print_text(std::string_view text);
 
 } // namespace vkfv

@@ -147,7 +147,7 @@ std::string dimensions_text(const std::vector<StandardDimension>& dimensions) {
         if (std::isfinite(row.standard_error)) {
             text += fmt::format(" +- {:.2g}", row.standard_error);
         }
-        // What is less than the standard error hardly counts beside it.
+        // An uncertainty below the standard error adds little to it by squares, so the text leaves it out.
         if (row.brightness_uncertainty > row.standard_error) {
             text += fmt::format(", +- {:.2g} by brightness that changes with focus", row.brightness_uncertainty);
         }

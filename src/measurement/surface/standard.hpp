@@ -36,7 +36,7 @@ struct StandardDimension {
     Row in_unit() const;
 };
 
-// What the evaluation of focus does to all heights of a feature alike.
+// The properties of a focus evaluation that move all heights of a feature alike.
 struct FocusEffects {
     const topography::BrightnessPull* pull; // mm
     topography::FocusWindow window;

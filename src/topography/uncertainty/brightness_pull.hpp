@@ -57,7 +57,7 @@ class BrightnessOfBlocks {
   private:
     // Images on either side for the line of a slope; empty where the curves have no form or the scan is too short.
     std::optional<int> reach_of(double width) const;
-    // Of each block, at each image.
+    // d ln B / dz a step: image by image, the slopes of all blocks; NaN where they are unknown.
     std::vector<std::vector<float>> slopes_of_blocks(int reach) const;
     // Linear between images; NaN off the scan.
     template <class AtImage>
