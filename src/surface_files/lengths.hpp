@@ -17,26 +17,18 @@ namespace vkfv::surface {
 
 // Units by name, in mm; the micro sign as UTF-8, in both of Unicode's forms, as Latin-1 and as code page 437 of DOS;
 // the angstrom in both of Unicode's forms.
-inline constexpr std::array length_units = {std::pair{std::string_view("m"), 1e3},
-                                            std::pair{std::string_view("cm"), 1e1},
-                                            std::pair{std::string_view("mm"), 1.0},
-                                            std::pair{std::string_view("um"), 1e-3},
-                                            std::pair{std::string_view("\xC2\xB5m"), 1e-3},
-                                            std::pair{std::string_view("\xCE\xBCm"), 1e-3},
-                                            std::pair{std::string_view("\xB5m"), 1e-3},
-                                            std::pair{std::string_view("\xE6m"), 1e-3},
-                                            std::pair{std::string_view("nm"), 1e-6},
-                                            std::pair{std::string_view("pm"), 1e-9},
-                                            std::pair{std::string_view("inch"), 25.4},
-                                            std::pair{std::string_view("inche"), 25.4},    // the plural without its s
-                                            std::pair{std::string_view("\\u00B5m"), 1e-3}, // as Java programs escape it
-                                            std::pair{std::string_view("micron"), 1e-3},
-                                            std::pair{std::string_view("microns"), 1e-3},
-                                            std::pair{std::string_view("\xC3\x85"), 1e-7},
-                                            std::pair{std::string_view("\xE2\x84\xAB"), 1e-7},
-                                            std::pair{std::string_view("angstrom"), 1e-7},
-                                            std::pair{std::string_view("in"), 25.4},
-                                            std::pair{std::string_view("mil"), 0.0254}};
+inline constexpr std::array length_units = {
+    std::pair{std::string_view("m"), 1e3},          std::pair{std::string_view("cm"), 1e1},
+    std::pair{std::string_view("mm"), 1.0},         std::pair{std::string_view("um"), 1e-3},
+    std::pair{std::string_view("\xC2\xB5m"), 1e-3}, std::pair{std::string_view("\xCE\xBCm"), 1e-3},
+    std::pair{std::string_view("\xB5m"), 1e-3},     std::pair{std::string_view("\xE6m"), 1e-3},
+    std::pair{std::string_view("nm"), 1e-6},        std::pair{std::string_view("pm"), 1e-9},
+    std::pair{std::string_view("inch"), 25.4},      std::pair{std::string_view("inches"), 25.4},
+    std::pair{std::string_view("\\u00B5m"), 1e-3}, // as Java programs escape it
+    std::pair{std::string_view("micron"), 1e-3},    std::pair{std::string_view("microns"), 1e-3},
+    std::pair{std::string_view("\xC3\x85"), 1e-7},  std::pair{std::string_view("\xE2\x84\xAB"), 1e-7},
+    std::pair{std::string_view("angstrom"), 1e-7},  std::pair{std::string_view("in"), 25.4},
+    std::pair{std::string_view("mil"), 0.0254}};
 inline constexpr double mm_per_nm = 1e-6;
 inline constexpr const char* length_unit_names = "a unit of length: m, cm, mm, um, nm, pm or inch";
 
@@ -52,6 +44,8 @@ inline std::optional<double> mm_per_unit(std::string_view name) {
     std::string word;
     for (const char c : name)
         word += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (const auto size = word.size() > 1 ? size_of(word) : std::nullopt)
+        return size;
     if (word.ends_with('s'))
         word.pop_back();
     for (const std::string_view metre : {"metre", "meter"})
