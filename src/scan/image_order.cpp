@@ -1,11 +1,12 @@
 #include "scan/image_order.hpp"
 
+#include "core/parsing/length_unit.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <initializer_list>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -28,22 +29,15 @@ std::string_view take_number(std::string_view& text) {
     return number;
 }
 
-// Length in mm of the unit at the beginning of a text, after a space or '_' or nothing; 0: there is no unit.
+// Length in mm of the unit at the beginning of a text, after a space or '_' or nothing; 0: there is no unit. Focal
+// positions are stated in units from the angstrom to the millimetre: "10m" and "10pm" in a name are times.
 double unit_at(std::string_view text) {
+    constexpr double smallest = 1e-7, largest = 1;
     text.remove_prefix(!text.empty() && (text.front() == ' ' || text.front() == '_') ? 1 : 0);
-    for (const auto& [unit, length] : std::initializer_list<std::pair<std::string_view, double>>{{"um", 1e-3},
-                                                                                                 {"\u00b5m", 1e-3},
-                                                                                                 {"\u03bcm", 1e-3},
-                                                                                                 {"microns", 1e-3},
-                                                                                                 {"micron", 1e-3},
-                                                                                                 {"nm", 1e-6},
-                                                                                                 {"mm", 1}}) {
-        if (text.starts_with(unit) &&
-            (text.size() == unit.size() || std::isalnum(static_cast<unsigned char>(text[unit.size()])) == 0)) {
-            return length;
-        }
-    }
-    return 0;
+    const auto behind = std::ranges::find_if(
+        text, [](unsigned char c) { return c < 0x80 && std::isalnum(c) == 0; }); // bytes of UTF-8 belong to the word
+    const double length = mm_per_length_unit(std::string_view(text.begin(), behind)).value_or(0);
+    return length >= smallest && length <= largest ? length : 0;
 }
 
 // A name split into texts and the numbers between them.

@@ -2,13 +2,12 @@
 
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
+#include "core/parsing/length_unit.hpp"
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -21,27 +20,9 @@ namespace vkfv::scan {
 
 namespace {
 
-// Length in mm of a unit by its name in ImageJ and OME; 0 if it is no length ("pixel", "reference frame"). Words may
-// have capitals, symbols may not: "Mm" is no millimetre.
+// Length in mm of a unit by its name in ImageJ and OME; 0 if it is no length ("pixel", "reference frame").
 double length_of(std::string_view unit) {
-    constexpr std::array<std::pair<std::string_view, double>, 28> units = {
-        {{"um", 1e-3},       {"\u00b5m", 1e-3},   {"\u03bcm", 1e-3},    {"\\u00B5m", 1e-3},
-         {"micron", 1e-3},   {"microns", 1e-3},   {"micrometer", 1e-3}, {"micrometre", 1e-3},
-         {"nm", 1e-6},       {"nanometer", 1e-6}, {"nanometre", 1e-6},  {"mm", 1},
-         {"millimeter", 1},  {"millimetre", 1},   {"cm", 10},           {"centimeter", 10},
-         {"centimetre", 10}, {"m", 1000},         {"meter", 1000},      {"metre", 1000},
-         {"inch", 25.4},     {"in", 25.4},        {"inches", 25.4},     {"ft", 304.8},
-         {"pm", 1e-9},       {"\u00c5", 1e-7},    {"\u212b", 1e-7},     {"km", 1e6}}};
-    constexpr std::size_t longest_symbol = 3;
-    std::string word(unit);
-    if (unit.size() > longest_symbol && unit.front() != '\\') {
-        std::ranges::transform(word, word.begin(), [](unsigned char c) { return c < 0x80 ? std::tolower(c) : c; });
-    }
-    const auto found = std::ranges::find(units, word, &std::pair<std::string_view, double>::first);
-    if (found != units.end()) {
-        return found->second;
-    }
-    return unit == "\xb5m" ? 1e-3 : 0; // the micro sign of Latin-1
+    return mm_per_length_unit(unit).value_or(0);
 }
 
 // A finite number, with spaces around it or a plus sign before it or not, whatever the locale here is: programs write

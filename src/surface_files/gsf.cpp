@@ -1,6 +1,7 @@
 #include "surface_files/gsf.hpp"
 
 #include "core/parsing/byte_reader.hpp"
+#include "core/parsing/length_unit.hpp"
 #include "surface_files/lengths.hpp"
 
 #include <map>
@@ -67,7 +68,7 @@ SurfaceFile parse_gsf(std::string_view bytes, const std::filesystem::path& path)
     };
     const auto unit = [&](const char* key) {
         const auto field = fields.find(key);
-        const auto mm = field == fields.end() ? std::nullopt : mm_per_unit(field->second);
+        const auto mm = field == fields.end() ? std::nullopt : mm_per_length_unit(field->second);
         if (!mm)
             file.fail({}, key, field == fields.end() ? "nothing" : plain_line(field->second), length_unit_names,
                       "Export the surface with lengths on all three axes.");

@@ -1,6 +1,7 @@
 #include "surface_files/gwy.hpp"
 
 #include "core/parsing/byte_reader.hpp"
+#include "core/parsing/length_unit.hpp"
 #include "surface_files/lengths.hpp"
 
 #include <map>
@@ -129,7 +130,7 @@ class Object {
     // The unit in mm; none for another quantity. Gwyddion omits the object of a quantity without unit.
     std::optional<double> unit(const char* name) const {
         const auto unit = object(name, "GwySIUnit");
-        return unit ? mm_per_unit(unit->text("unitstr")) : std::nullopt;
+        return unit ? mm_per_length_unit(unit->text("unitstr")) : std::nullopt;
     }
     std::string_view doubles(const char* name, std::uint64_t count) const {
         const auto component = components_.find(name);

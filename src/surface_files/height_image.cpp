@@ -3,6 +3,7 @@
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
 #include "core/parsing/byte_reader.hpp"
+#include "core/parsing/length_unit.hpp"
 #include "images/exr_header.hpp"
 #include "images/image_file.hpp"
 #include "images/tiff.hpp"
@@ -78,14 +79,14 @@ Calibration calibration_of(const images::DescribedImage& image, const std::files
         const std::string_view value = rest.substr(0, rest.find('\n'));
         return value.ends_with('\r') ? value.substr(0, value.size() - 1) : value;
     };
-    const auto along_x = mm_per_unit(value_of("unit"));
-    const auto along_y = value_of("yunit").empty() ? along_x : mm_per_unit(value_of("yunit"));
+    const auto along_x = mm_per_length_unit(value_of("unit"));
+    const auto along_y = value_of("yunit").empty() ? along_x : mm_per_length_unit(value_of("yunit"));
     if (along_x && along_y && image.columns_per_unit > 0 && image.rows_per_unit > 0) {
         result.pitch_x = *along_x / image.columns_per_unit;
         result.pitch_y = *along_y / image.rows_per_unit;
     }
     // Calibrated values have a unit of their own; others are lengths in that of the plane.
-    result.unit = value_of("vunit").empty() ? along_x : mm_per_unit(value_of("vunit"));
+    result.unit = value_of("vunit").empty() ? along_x : mm_per_length_unit(value_of("vunit"));
     if (const std::string_view function = value_of("cf"); !function.empty()) {
         constexpr std::string_view straight_line = "0", none = "20";
         if (function == straight_line) {

@@ -4,63 +4,13 @@
 #include "core/mathematics/units.hpp"
 #include "surface/metres.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
 
 namespace vkfv::surface {
 
-// Units by name, in mm; the micro sign as UTF-8, in both of Unicode's forms, as Latin-1 and as code page 437 of DOS;
-// the angstrom in both of Unicode's forms.
-inline constexpr std::array length_units = {
-    std::pair{std::string_view("m"), 1e3},          std::pair{std::string_view("cm"), 1e1},
-    std::pair{std::string_view("mm"), 1.0},         std::pair{std::string_view("um"), 1e-3},
-    std::pair{std::string_view("\xC2\xB5m"), 1e-3}, std::pair{std::string_view("\xCE\xBCm"), 1e-3},
-    std::pair{std::string_view("\xB5m"), 1e-3},     std::pair{std::string_view("\xE6m"), 1e-3},
-    std::pair{std::string_view("nm"), 1e-6},        std::pair{std::string_view("pm"), 1e-9},
-    std::pair{std::string_view("inch"), 25.4},      std::pair{std::string_view("inches"), 25.4},
-    std::pair{std::string_view("\\u00B5m"), 1e-3}, // as Java programs escape it
-    std::pair{std::string_view("micron"), 1e-3},    std::pair{std::string_view("microns"), 1e-3},
-    std::pair{std::string_view("\xC3\x85"), 1e-7},  std::pair{std::string_view("\xE2\x84\xAB"), 1e-7},
-    std::pair{std::string_view("angstrom"), 1e-7},  std::pair{std::string_view("in"), 25.4},
-    std::pair{std::string_view("mil"), 0.0254}};
 inline constexpr double mm_per_nm = 1e-6;
 inline constexpr const char* length_unit_names = "a unit of length: m, cm, mm, um, nm, pm or inch";
-
-// The size of a unit in mm, also by its whole name, in the plural and in capital letters ("Micrometers", "NM"); none
-// for another word. A lone M is no metre.
-inline std::optional<double> mm_per_unit(std::string_view name) {
-    const auto size_of = [](std::string_view known) {
-        const auto unit = std::ranges::find(length_units, known, &std::pair<std::string_view, double>::first);
-        return unit == length_units.end() ? std::nullopt : std::optional(unit->second);
-    };
-    if (const auto size = size_of(name))
-        return size;
-    std::string word;
-    for (const char c : name)
-        word += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (const auto size = word.size() > 1 ? size_of(word) : std::nullopt)
-        return size;
-    if (word.ends_with('s'))
-        word.pop_back();
-    for (const std::string_view metre : {"metre", "meter"})
-        if (word.ends_with(metre)) {
-            const std::string prefix = word.substr(0, word.size() - metre.size());
-            return prefix.empty()      ? size_of("m")
-                   : prefix == "centi" ? size_of("cm")
-                   : prefix == "milli" ? size_of("mm")
-                   : prefix == "micro" ? size_of("um")
-                   : prefix == "nano"  ? size_of("nm")
-                   : prefix == "pico"  ? size_of("pm")
-                                       : std::nullopt;
-        }
-    return word.size() > 1 ? size_of(word) : std::nullopt;
-}
 
 // A value of a unit (mm) in mm; values that a writer divided by `unit` are restored to the same bits (metres.hpp says
 // why).

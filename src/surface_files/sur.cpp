@@ -1,6 +1,7 @@
 #include "surface_files/sur.hpp"
 
 #include "core/parsing/byte_reader.hpp"
+#include "core/parsing/length_unit.hpp"
 #include "surface_files/lengths.hpp"
 
 #include <zlib.h>
@@ -31,7 +32,7 @@ constexpr double deflate_ratio = 1032;   // zlib's largest ratio: 258 bytes from
 double unit_at(const ByteReader& file, std::size_t offset) {
     std::string_view text = file.bytes(offset, axis_length, "unit");
     text = text.substr(0, text.find_first_of(std::string_view(" \0", 2)));
-    const auto unit = mm_per_unit(text);
+    const auto unit = mm_per_length_unit(text);
     if (!unit)
         file.fail(offset, "unit of length", text.empty() ? "nothing" : plain_line(text), length_unit_names,
                   "Export the surface with lengths on all three axes.");

@@ -2,6 +2,7 @@
 
 #include "core/mathematics/units.hpp"
 #include "core/parsing/byte_reader.hpp"
+#include "core/parsing/length_unit.hpp"
 #include "surface_files/lengths.hpp"
 #include "surface_files/table_text.hpp"
 
@@ -38,13 +39,13 @@ std::optional<double> unit_in_name(std::string_view name) {
         const auto open = name.rfind(brackets[0]);
         const auto close = name.rfind(brackets[1]);
         if (open != std::string_view::npos && close != std::string_view::npos && open < close)
-            return mm_per_unit(bare(name.substr(open + 1, close - open - 1)));
+            return mm_per_length_unit(bare(name.substr(open + 1, close - open - 1)));
     }
     if (const auto slash = name.rfind('/'); slash != std::string_view::npos)
-        return mm_per_unit(bare(name.substr(slash + 1)));
+        return mm_per_length_unit(bare(name.substr(slash + 1)));
     const auto before = name.find_last_of(" _,");
     const std::string_view last = before == std::string_view::npos ? std::string_view() : bare(name.substr(before + 1));
-    return last.size() > 1 && last != "in" ? mm_per_unit(last) : std::nullopt;
+    return last.size() > 1 && last != "in" ? mm_per_length_unit(last) : std::nullopt;
 }
 
 // A number with a point, or with a decimal comma.
@@ -74,19 +75,19 @@ struct Statement {
     std::vector<std::string_view> values;
 
     std::optional<double> number() const { return values.empty() ? std::nullopt : number_with_comma(values[0]); }
-    std::optional<double> unit() const { return values.empty() ? std::nullopt : mm_per_unit(bare(values[0])); }
+    std::optional<double> unit() const { return values.empty() ? std::nullopt : mm_per_length_unit(bare(values[0])); }
     std::optional<double> length() const {
         if (values.empty())
             return std::nullopt;
         if (const auto value = number(); value && values.size() > 1) {
-            const auto unit = mm_per_unit(values[1]);
+            const auto unit = mm_per_length_unit(values[1]);
             return unit ? std::optional(*value * *unit) : std::nullopt;
         }
         const auto blank = values[0].find(' ');
         if (blank == std::string_view::npos)
             return std::nullopt;
         const auto value = number_with_comma(values[0].substr(0, blank));
-        const auto unit = mm_per_unit(bare(values[0].substr(blank)));
+        const auto unit = mm_per_length_unit(bare(values[0].substr(blank)));
         return value && unit ? std::optional(*value * *unit) : std::nullopt;
     }
 };
@@ -166,7 +167,7 @@ void take(const Statement& statement, TableHeader& header) {
         const auto arrow = key.find('>'), close = key.rfind(')');
         if (arrow != std::string::npos && close != std::string::npos && arrow < close)
             if (const auto factor = statement.number(),
-                unit = mm_per_unit(bare(std::string_view(key).substr(arrow + 1, close - arrow - 1)));
+                unit = mm_per_length_unit(bare(std::string_view(key).substr(arrow + 1, close - arrow - 1)));
                 factor && unit)
                 first(header.unit, *factor * *unit);
     }
@@ -231,11 +232,11 @@ TableHeader table_header(std::span<const std::string_view> lines, std::size_t co
             return false;
         // A line below the names may contain only the units.
         const bool alone =
-            std::ranges::all_of(cells, [](std::string_view cell) { return mm_per_unit(cell).has_value(); });
+            std::ranges::all_of(cells, [](std::string_view cell) { return mm_per_length_unit(cell).has_value(); });
         std::array<std::optional<double>, 3> units;
         std::array<bool, 3> unknown{};
         for (std::size_t k = 0; k < std::min(count, units.size()); ++k) {
-            units[k] = alone ? mm_per_unit(cells[k]) : unit_in_name(cells[k]);
+            units[k] = alone ? mm_per_length_unit(cells[k]) : unit_in_name(cells[k]);
             unknown[k] = !units[k] && cells[k].ends_with(']');
         }
         if (std::ranges::none_of(units, [](const auto& unit) { return unit.has_value(); }))
