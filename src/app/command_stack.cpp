@@ -56,7 +56,7 @@ Command stack_command() {
 
 void run_stack(const CommandOptions& options) {
     auto progress = Progress::on_standard_error(options.quiet);
-    const auto configuration = load_configuration(options.file, options.overrides, Needs::stack);
+    const auto configuration = measurement::load_stack(options.file, options.overrides);
     const auto shard = options.of<StackOptions>().shard;
     if (shard) {
         const auto traced = measurement::trace_shard(configuration, *shard, progress);

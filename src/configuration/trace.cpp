@@ -1,6 +1,7 @@
 // The table [trace]: its keys and its reader.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
+#include "optics/instrument/turning.hpp"
 
 namespace vkfv {
 
@@ -19,11 +20,12 @@ const ChoiceKey<bool> mode("mode",
                            {{false, "sequential", "light meets the surfaces in their order"},
                             {true, "nonsequential", "light finds its own way, and interfaces split it: ghosts"}},
                            false, "How light goes through the instrument.");
-const ChoiceKey<Estimator>
-    estimator("estimator",
-              {{Estimator::forward, "forward", "from the source to the detector"},
-               {Estimator::backward, "backward", "from the detector to the source: less noise for the same rays"}},
-              Estimator::forward, "Which end paths start from.");
+const ChoiceKey<std::optional<Estimator>> estimator(
+    "estimator",
+    {{std::nullopt, "auto", "backward where light can be traced so, else forward; results name the one taken"},
+     {Estimator::forward, "forward", "from the source to the detector"},
+     {Estimator::backward, "backward", "from the detector to the source: less noise for the same rays"}},
+    std::optional<Estimator>(), "Which end paths start from.");
 const ChoiceKey<bool>
     emission("emission",
              {{true, "directed",
@@ -77,7 +79,13 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
         section.fail(mode, "\"nonsequential\" with [[mesh_element]], which light in a given sequence does not meet",
                      "Set mode = \"nonsequential\", or remove the mesh elements.");
     }
-    trace.estimator = section.choice(estimator);
+    const auto wanted = table.optional_choice(estimator.name, estimator.choice_names());
+    const auto given = wanted ? estimator.value_of(*wanted) : std::nullopt;
+    configuration.estimator_is_chosen = !given;
+    const bool directed = table.optional_choice(scattering.name, scattering.choice_names()) == scattering.name_of(true);
+    const bool may_turn = !trace.nonsequential && !directed && optics::can_turn_round(configuration.instrument);
+    trace.estimator = given.value_or(may_turn ? Estimator::backward : Estimator::forward);
+    section.record(estimator, toml_quoted(estimator.name_of(trace.estimator)));
     if (trace.estimator == Estimator::backward) {
         configuration.instrument.turned = true;
         if (trace.nonsequential) {

@@ -1,6 +1,7 @@
 // The ledger of a stack, read from its folder.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ struct LedgerShare {
 struct MeanLedger {
     double emitted = 0; // W
     std::vector<LedgerShare> shares;
+    std::uint64_t rays = 0; // of a forward trace beside the images; 0: the images' own paths
 };
 
 // The mean ledger of a stack; empty if ledger.csv is missing or cannot be read.

@@ -4,6 +4,7 @@
 #include "core/parsing/length_unit.hpp"
 #include "surface_files/lengths.hpp"
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 

@@ -4,7 +4,9 @@
 #include "core/parsing/length_unit.hpp"
 #include "surface_files/lengths.hpp"
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 namespace vkfv::surface {
 namespace {

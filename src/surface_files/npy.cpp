@@ -6,6 +6,7 @@
 #include "surface_files/lengths.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 

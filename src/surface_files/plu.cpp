@@ -4,6 +4,7 @@
 #include "core/parsing/byte_reader.hpp"
 #include "surface_files/lengths.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace vkfv::surface {

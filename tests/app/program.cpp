@@ -66,6 +66,7 @@ z_stop_um = 2.0
 z_step_um = 1.0
 
 [trace]
+estimator = "forward"
 rays = 2000
 seed = 1
 

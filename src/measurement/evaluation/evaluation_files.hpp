@@ -21,7 +21,7 @@ struct StackSource {
     std::string summary;       // specimen, instrument and light in one line; empty: not known
     std::string layout;        // the instrument as SVG; empty: not known
     std::string configuration; // TOML; empty: none
-    scan::MeanLedger ledger{}; // light of the images; empty: not known
+    scan::MeanLedger ledger{}; // light of the images or of a trace beside them; empty: not known
 };
 
 // The source of a stack that vkfv traced.

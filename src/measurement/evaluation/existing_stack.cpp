@@ -5,6 +5,7 @@
 #include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/known_truth.hpp"
+#include "measurement/scene/light_way.hpp"
 #include "measurement/scene/phase_limits.hpp"
 #include "measurement/scene/stage_figures.hpp"
 #include "report/declared_figures.hpp"
@@ -245,7 +246,9 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
                        positions[place], reading_of(configuration, positions[place], static_cast<int>(place)));
     }
     auto source = stack_source(configuration, instrument);
-    source.ledger = scan::mean_ledger(stack.folder);
+    source.ledger = configuration.trace.estimator == trace::Estimator::backward
+                        ? light_way(configuration, instrument, specimen, positions)
+                        : scan::mean_ledger(stack.folder);
     auto origin = run_of(stack.folder);
     std::vector<Warning> of_waves = warnings_of_run(stack.folder), of_camera;
     std::ranges::copy_if(of_waves, std::back_inserter(of_camera),

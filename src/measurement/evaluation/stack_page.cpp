@@ -169,7 +169,7 @@ nlohmann::ordered_json ledger_json(const scan::MeanLedger& ledger) {
     for (const auto& share : ledger.shares) {
         shares.push_back({share.name, share.power});
     }
-    return {{"emitted", ledger.emitted}, {"shares", shares}};
+    return {{"emitted", ledger.emitted}, {"shares", shares}, {"rays", ledger.rays}};
 }
 
 void add_light(report::Page& page, const scan::MeanLedger& ledger) {
@@ -185,7 +185,11 @@ void add_light(report::Page& page, const scan::MeanLedger& ledger) {
         }
     }
     add_columns(rows, columns);
-    page.table("Mean of all images; what is not listed took none", rows);
+    const std::string of = ledger.rays == 0 ? "Mean of all images"
+                                            : fmt::format("Of {} rays that were traced forward: the images' own "
+                                                          "paths follow only light that is detected",
+                                                          ledger.rays);
+    page.table(of + "; what is not listed took none", rows);
 }
 
 // A reader of the report may not have seen the terminal, so the page repeats its verdict and its warnings.

@@ -1,15 +1,36 @@
 #include "measurement/stack/stack.hpp"
 
+#include "core/files/file.hpp"
 #include "core/messages/safe_text.hpp"
 #include "core/messages/stages.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/scene/working_devices.hpp"
 #include "measurement/stack/stack_parts.hpp"
 #include "measurement/stack/stack_runs.hpp"
+#include "scan/stack_identity.hpp"
 
 #include <fmt/format.h>
 
+#include <system_error>
+
 namespace vkfv::measurement {
+
+Configuration load_stack(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides) {
+    auto configuration = load_configuration(file, overrides, Needs::stack);
+    const auto begun = configuration.output_directory / scan::configuration_name;
+    std::error_code none;
+    if (!configuration.estimator_is_chosen || !std::filesystem::exists(begun, none)) {
+        return configuration;
+    }
+    const std::string identity = scan::identity_in(read_file(begun));
+    const auto estimator = TomlTable::parse(identity, begun).table_or_empty("trace").optional_string("estimator");
+    if (!estimator) { // the folder holds something else, as the store will tell
+        return configuration;
+    }
+    auto of_folder = overrides;
+    of_folder.push_back({"trace.estimator", toml_quoted(*estimator), begun.string()});
+    return load_configuration(file, of_folder, Needs::stack);
+}
 
 StackResult measure_stack(const Configuration& configuration, Progress& progress) {
     return StackRuns().measure(configuration, progress);

@@ -23,6 +23,10 @@ struct StackResult {
     std::string device{};             // device that traced the images; empty: not known
 };
 
+// Reads the configuration of a stack as load_configuration() does. Where it leaves the estimator to vkfv ("auto"), a
+// stack that was begun in the output folder is continued by its own estimator.
+Configuration load_stack(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides);
+
 // Traces the images that the output folder lacks of the configuration's stack, evaluates all of them, and writes the
 // results there (write_results()). Images kept from an earlier run give the same result as those traced now. Throws
 // InputError, DeviceError, and RunError after which the same call continues.

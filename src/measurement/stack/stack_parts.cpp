@@ -10,6 +10,7 @@
 #include "measurement/image/exposure.hpp"
 #include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/assembly.hpp"
+#include "measurement/scene/light_way.hpp"
 #include "measurement/scene/specimen_view.hpp"
 #include "measurement/scene/stage_figures.hpp"
 #include "report/declared_figures.hpp"
@@ -86,6 +87,10 @@ GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusP
                   static_cast<int>(scene.positions.size())) {
     truth_ = in_background([&scene] { return truth_on_pixels(scene.instrument, scene.configuration, scene.specimen); });
     source_ = in_background([&scene] { return stack_source(scene.configuration, scene.instrument); });
+    if (scene.configuration.trace.estimator == trace::Estimator::backward) {
+        light_way_ = in_background(
+            [&scene] { return light_way(scene.configuration, scene.instrument, scene.specimen, scene.positions); });
+    }
     if (!filters.empty()) {
         wave_limits_ =
             in_background([&scene, filters] { return worst_of(limits_of_lights(filters, scene.instrument)); });
@@ -126,7 +131,7 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
                    {"rays_per_image", trace::launched_rays(configuration.trace, configuration.instrument)}},
         .source = source_.get(),
         .files = topography_files(configuration)};
-    stack.source.ledger = scan::mean_ledger(store.folder());
+    stack.source.ledger = light_way_ ? light_way_->get() : scan::mean_ledger(store.folder());
     if (wave_limits_) {
         const WaveLimits limits = wave_limits_->get();
         append(warnings, warnings_of(limits));

@@ -79,6 +79,7 @@ class GrowingEvaluation {
     bool any_light_ = false;
     std::future<KnownTruth> truth_;
     std::future<StackSource> source_;
+    std::optional<std::future<scan::MeanLedger>> light_way_; // of images that are traced backward
     std::optional<std::future<WaveLimits>> wave_limits_;
     std::optional<std::future<PhaseLimits>> phase_limits_;
 };

@@ -46,7 +46,7 @@ std::vector<Configuration> repeated(const std::filesystem::path& file, const std
         of_repeat.push_back(
             {"trace.seed", fmt::format("{}", seed + static_cast<std::uint32_t>(repeat)), "sweep.repeats"});
         of_repeat.push_back({"output.directory", toml_quoted(own.string()), "sweep"});
-        result.push_back(load_configuration(file, of_repeat, Needs::stack));
+        result.push_back(load_stack(file, of_repeat));
     }
     return result;
 }

@@ -2,9 +2,11 @@
 #include "optics/instrument/assembly.hpp"
 
 #include "core/threads/parallel_list.hpp"
+#include "optics/instrument/turning.hpp"
 #include "optics/train/first_order.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -231,8 +233,7 @@ PlacedSurfaces specimen_to_source(const InstrumentDescription& description, cons
 // Sets the ring light from which backward paths draw points. A cover glass shifts light sideways by less than its
 // thickness where it is the denser medium: a ring widened by that, all round, contains all points that emit.
 void draw_ring(physics::f64::BackwardOptics& optics, const InstrumentDescription& description,
-               const AxialLayout& layout, const physics::f64::Instrument& constants,
-               const std::vector<Surface>& to_source) {
+               const physics::f64::Instrument& constants, const std::vector<Surface>& to_source) {
     double from_front = 0; // distance to the frame in which light enters the train
     for (std::size_t i = 1; i < to_source.size(); ++i) {
         from_front += to_source[i].distance;
@@ -242,13 +243,9 @@ void draw_ring(physics::f64::BackwardOptics& optics, const InstrumentDescription
     optics.ring_is_bare = to_source.empty() ? 1u : 0u;
     optics.ring_cosine = std::sqrt(1 - constants.emission_sine * constants.emission_sine);
     if (!to_source.empty()) {
-        const Spectrum& spectrum = description.spectrum;
-        for (const double wavelength_um : {spectrum.shortest_um, spectrum.longest_um}) {
-            if (description.cover_glass->glass.index(wavelength_um) <
-                layout.objective_lens.medium_before.index(wavelength_um)) {
-                refuse("trace.estimator", "\"backward\"", "a cover glass denser than the immersion, under a ring light",
-                       "Use estimator = \"forward\", or another glass.");
-            }
+        if (!can_turn_round(description)) {
+            refuse("trace.estimator", "\"backward\"", "a cover glass denser than the immersion, under a ring light",
+                   "Use estimator = \"forward\", or another glass.");
         }
         // The more grazing the light is at the band, the farther a sideways shift moves its point along the band.
         const double flattest = std::max(optics.ring_cosine, 1e-2);
@@ -290,7 +287,7 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
     optics.pupil_position = pupil.per_position;
 
     if (description.source.ring) {
-        draw_ring(optics, description, layout, turned.constants, to_source);
+        draw_ring(optics, description, turned.constants, to_source);
         return turned;
     }
     const RayTransfer whole = free_space(layout.working_distance, layout.object_index.centre)
@@ -335,6 +332,20 @@ Instrument turned_round(const Instrument& instrument) {
     turned.constants = instrument.turned.value().constants;
     turned.surface_names.resize(turned.surfaces.size());
     return turned;
+}
+
+bool can_turn_round(const InstrumentDescription& description) {
+    const auto sources = description.sources();
+    const bool ring =
+        std::ranges::any_of(sources, [](const SourceDescription* source) { return source->ring.has_value(); });
+    if (!ring || !description.cover_glass) {
+        return true;
+    }
+    const Medium& medium = description.immersion.value_or(description.objective.medium_before);
+    return std::ranges::none_of(
+        std::array{description.spectrum.shortest_um, description.spectrum.longest_um}, [&](double wavelength_um) {
+            return description.cover_glass->glass.index(wavelength_um) < medium.index(wavelength_um);
+        });
 }
 
 } // namespace vkfv::optics

@@ -1,7 +1,7 @@
 "use strict";
 // The flow of light from the source to the detector. Light that is lost at an element leaves the stream there.
 vkfv.parts.push(() => {
-    const {emitted, shares} = vkfv.data.ledger;
+    const {emitted, shares, rays} = vkfv.data.ledger;
     const place = document.getElementById("flow");
     if (!place) {
         return;
@@ -140,15 +140,11 @@ vkfv.parts.push(() => {
         d3.select(place).selectAll("*").remove();
         (place.clientWidth < narrowest ? bars : streams)(stations());
     }
-    // The backward estimator follows only light that is detected.
-    const followed = power("not followed backward") === 0;
     d3.select("#flow-note").text(
         `${vkfv.number(emitted)} W leave the source` + (notAimed > 0
             ? `, ${figure(100 * notAimed / emitted)} % of them in directions that cannot pass the illuminator: shares are of the other ${figure(aimed)} W`
-            : "") + `; ${figure(detected)} W are detected. ` +
-        (followed ? "" : "The backward estimator follows no other light: forward tracing shows where it goes."));
-    if (followed) {
-        vkfv.events.on("resize.light", draw);
-        draw();
-    }
+            : "") + `; ${figure(detected)} W are detected.` +
+        (rays > 0 ? ` Found by ${rays} rays that were traced forward: the images' own paths follow only light that is detected.` : ""));
+    vkfv.events.on("resize.light", draw);
+    draw();
 });
