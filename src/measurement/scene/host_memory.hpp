@@ -3,19 +3,23 @@
 
 #include "core/mathematics/pixel_grid.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 namespace vkfv::measurement {
 
-// The physical memory of this machine, bytes.
-inline std::uint64_t memory_of_host() {
-    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
+// The limit (bytes) that control groups set to the memory of a process: of its own group and of all groups around it,
+// by version 1 or 2. Containers and batch systems set it. groups: the file that lists the groups of the process; mount:
+// the folder that has the groups; none if nothing limits it.
+std::optional<std::uint64_t> limit_of_groups(const std::filesystem::path& groups = "/proc/self/cgroup",
+                                             const std::filesystem::path& mount = "/sys/fs/cgroup");
+
+// The memory that this process may have, bytes: the machine's, or less where its control groups say so.
+std::uint64_t memory_of_host();
 
 // The largest detector.pixels of the same form that fit into `there` bytes, if `pixels` take `memory` bytes and memory
 // is in proportion to their number.

@@ -18,7 +18,7 @@ scan::MeanLedger light_way(const Configuration& configuration, const optics::Ins
     options.waves.reset();
     const auto tracer = trace::make_host_tracer(instrument, specimen, options);
     const trace::Image image = tracer->expose(heights[heights.size() / 2], 0);
-    scan::MeanLedger ledger{.emitted = image.ledger.emitted, .rays = image.rays};
+    scan::MeanLedger ledger{.emitted = image.ledger.emitted, .shares = {}, .rays = image.rays};
     for (const auto& entry : image.ledger.entries) {
         ledger.shares.push_back({entry.name, entry.power});
     }
