@@ -20,12 +20,14 @@ const ChoiceKey<bool> mode("mode",
                            {{false, "sequential", "light meets the surfaces in their order"},
                             {true, "nonsequential", "light finds its own way, and interfaces split it: ghosts"}},
                            false, "How light goes through the instrument.");
-const ChoiceKey<std::optional<Estimator>> estimator(
+enum class WantedEstimator { automatic, forward, backward };
+const ChoiceKey<WantedEstimator> estimator(
     "estimator",
-    {{std::nullopt, "auto", "backward where light can be traced so, else forward; results name the one taken"},
-     {Estimator::forward, "forward", "from the source to the detector"},
-     {Estimator::backward, "backward", "from the detector to the source: less noise for the same rays"}},
-    std::optional<Estimator>(), "Which end paths start from.");
+    {{WantedEstimator::automatic, "auto",
+      "backward where light can be traced so, else forward; results name the one taken"},
+     {WantedEstimator::forward, "forward", "from the source to the detector"},
+     {WantedEstimator::backward, "backward", "from the detector to the source: less noise for the same rays"}},
+    WantedEstimator::automatic, "Which end paths start from.");
 const ChoiceKey<bool>
     emission("emission",
              {{true, "directed",
@@ -79,13 +81,16 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
         section.fail(mode, "\"nonsequential\" with [[mesh_element]], which light in a given sequence does not meet",
                      "Set mode = \"nonsequential\", or remove the mesh elements.");
     }
-    const auto wanted = table.optional_choice(estimator.name, estimator.choice_names());
-    const auto given = wanted ? estimator.value_of(*wanted) : std::nullopt;
-    configuration.estimator_is_chosen = !given;
+    const auto word = table.optional_choice(estimator.name, estimator.choice_names());
+    const auto wanted = word ? estimator.value_of(*word) : estimator.value.value();
+    configuration.estimator_is_chosen = wanted == WantedEstimator::automatic;
     const bool directed = table.optional_choice(scattering.name, scattering.choice_names()) == scattering.name_of(true);
-    const bool may_turn = !trace.nonsequential && !directed && optics::can_turn_round(configuration.instrument);
-    trace.estimator = given.value_or(may_turn ? Estimator::backward : Estimator::forward);
-    section.record(estimator, toml_quoted(estimator.name_of(trace.estimator)));
+    const bool turns = configuration.estimator_is_chosen
+                           ? !trace.nonsequential && !directed && optics::can_turn_round(configuration.instrument)
+                           : wanted == WantedEstimator::backward;
+    trace.estimator = turns ? Estimator::backward : Estimator::forward;
+    section.record(estimator,
+                   toml_quoted(estimator.name_of(turns ? WantedEstimator::backward : WantedEstimator::forward)));
     if (trace.estimator == Estimator::backward) {
         configuration.instrument.turned = true;
         if (trace.nonsequential) {
