@@ -12,8 +12,7 @@ namespace vkfv::measurement {
 
 // The ledger of a short forward trace at the middle one of the focal heights (mm), for images that are traced backward:
 // backward paths follow only light that is detected. It takes a hundredth of the stack's rays, but between 1000 and
-// 20 000, in double on the host, so that the numbers depend on the configuration alone. Throws InputError if the
-// specimen exceeds the host's memory.
+// 20 000, in double on the host, so that the numbers depend on the configuration alone.
 scan::MeanLedger light_way(const Configuration& configuration, const optics::Instrument& instrument,
                            const specimen::Specimen& specimen, const std::vector<double>& heights);
 
