@@ -262,8 +262,8 @@ TEST(CommandLine, BashCompletes) {
         {"vkfv --camera de", "demo one.toml\n"}, // the command, and not the option of `vkfv new`
         {"vkfv stack x --set trace.est", "trace.estimator=\n"},
         {"vkfv stack x --set trace.estimator = ba", "backward\n"}, // bash parts words at "="
-        {"vkfv stack x --set trace.estimator = ''", "forward\nbackward\n"},
-        {"vkfv stack x --set trace.estimator =", "forward\nbackward\n"},
+        {"vkfv stack x --set trace.estimator = ''", "auto\nforward\nbackward\n"},
+        {"vkfv stack x --set trace.estimator =", "auto\nforward\nbackward\n"},
         {"vkfv stack x --set trace.estimator=ba", "trace.estimator=backward\n"}, // where \"=\" parts none
         {"vkfv stack x --set specimen.level = t", "true\n"},
         {"vkfv stack x --set trace.rays = 1", "\n"},

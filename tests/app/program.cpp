@@ -66,10 +66,9 @@ z_stop_um = 2.0
 z_step_um = 1.0
 
 [trace]
-estimator = "forward"
 rays = 2000
 seed = 1
-
+estimator = "forward"
 [topography]
 window_px = 3
 
