@@ -81,6 +81,7 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
         section.fail(mode, "\"nonsequential\" with [[mesh_element]], which light in a given sequence does not meet",
                      "Set mode = \"nonsequential\", or remove the mesh elements.");
     }
+    // The order of the lines is part of a stack's identity, so `scattering`, which decides here too, is read below.
     const auto word = table.optional_choice(estimator.name, estimator.choice_names());
     const auto wanted = word ? estimator.value_of(*word) : estimator.value.value();
     configuration.estimator_is_chosen = wanted == WantedEstimator::automatic;

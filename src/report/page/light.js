@@ -29,8 +29,7 @@ vkfv.parts.push(() => {
             const rest = d3.sum(losses.slice(shown), d => d[1]);
             return {name, losses: [...losses.slice(0, shown), ...(rest > 0 ? [["other losses there", rest]] : [])]};
         });
-        // These losses belong to no element: light that an element ends in the non-sequential trace, and light that the
-        // estimator does not follow.
+        // These losses belong to no element: light that an element ends in the non-sequential trace.
         const others = shares.filter(d => !used.has(d[0]) && d[1] > 1e-9 * aimed).sort((a, b) => b[1] - a[1]).slice(0, 8);
         const all = [{name: "Source", losses: others}, ...found, {name: "Detector", losses: []}];
         let left = aimed;
