@@ -3,38 +3,40 @@
 #include <algorithm>
 
 namespace vkfv::topography {
-namespace {
-
-constexpr float just_below = 0.98f; // as a share of the largest value
-
-} // namespace
 
 void SaturationCount::add(std::span<const float> values) {
-    if (values.empty()) {
-        return;
+    for (const float value : values) {
+        if (value >= levels_.back().value) {
+            count(value);
+        }
     }
-    if (const float largest = *std::ranges::max_element(values); largest > largest_) {
-        below_ = largest_ >= just_below * largest ? below_ + there_ : 0;
-        there_ = 0;
-        largest_ = largest;
-    }
-    const float least = just_below * largest_;
-    const auto near = static_cast<std::size_t>(std::ranges::count_if(values, [&](float v) { return v >= least; }));
-    const auto there = static_cast<std::size_t>(std::ranges::count(values, largest_));
-    there_ += there;
-    below_ += near - there;
     all_ += values.size();
+}
+
+// A level that is among the largest at last was among them whenever it occurred, so its count is complete.
+void SaturationCount::count(float value) {
+    auto* const level = std::ranges::find_if(levels_, [&](const Level& l) { return l.value <= value; });
+    if (level->value < value) {
+        std::shift_right(level, levels_.end(), 1);
+        *level = {.value = value};
+    }
+    ++level->values;
 }
 
 Saturation SaturationCount::found() const {
     constexpr double least_share = 1e-4;
     constexpr std::size_t least_values = 1000; // fewer values may be equal by chance
-    constexpr std::size_t times_as_many = 4;
-    const double share = all_ > 0 ? static_cast<double>(there_) / static_cast<double>(all_) : 0;
+    // Stretched grey values fill every few levels twice, and bright textures have turning points. Both raise a level's
+    // count less than this. A file's largest integer needs less evidence: it is where values end for certain.
+    constexpr std::size_t times_as_many = 4, times_as_many_at_the_end = 2;
+    const Level& largest = levels_.front();
+    const std::size_t below = std::ranges::max(levels_.begin() + 1, levels_.end(), {}, &Level::values)->values;
+    const double share = all_ > 0 ? static_cast<double>(largest.values) / static_cast<double>(all_) : 0;
+    const std::size_t times = largest.value == 1 ? times_as_many_at_the_end : times_as_many;
     // Images that have one value everywhere are not photographs, and count as unsaturated.
-    const bool saturated = largest_ > 0 && share >= least_share && all_ >= least_values &&
-                           there_ > times_as_many * below_ && there_ < all_;
-    return saturated ? Saturation{.level = largest_, .share = share} : Saturation{};
+    const bool saturated = largest.value > 0 && share >= least_share && all_ >= least_values &&
+                           largest.values > times * below && below > 0;
+    return saturated ? Saturation{.level = largest.value, .share = share} : Saturation{};
 }
 
 } // namespace vkfv::topography

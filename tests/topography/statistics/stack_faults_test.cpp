@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -102,6 +103,66 @@ TEST(StackFaults, SaturatedPixelsAreCounted) {
     }
     ASSERT_GT(cut, all / 100);
     EXPECT_NEAR(faults_of(images).saturated_share, static_cast<double>(cut) / static_cast<double>(all), 1e-12);
+}
+
+// Grey values of a Gaussian distribution about 0.45 of full scale, of a contrast, and rounded to a number of levels.
+std::vector<float> grey_values(double contrast, double levels) {
+    std::mt19937 random(11);
+    std::normal_distribution<double> normal(0.45, 0.45 * contrast);
+    std::vector<float> values(200'000);
+    std::ranges::generate(values, [&] { return static_cast<float>(std::round(normal(random) * levels) / levels); });
+    return values;
+}
+
+Saturation saturation_of(std::span<const float> values) {
+    SaturationCount count;
+    count.add(values.subspan(0, values.size() / 3));
+    count.add(values.subspan(values.size() / 3));
+    return count.found();
+}
+
+// Where the texture has little contrast, many grey values lie just below the saturated ones.
+TEST(Saturation, IsFoundAtEveryContrastAndDepth) {
+    for (const double levels : {255.0, 4095.0, 65535.0}) {
+        for (const double contrast : {0.03, 0.1, 0.4}) {
+            for (const double share : {0.01, 0.1, 0.3}) {
+                auto values = grey_values(contrast, levels);
+                auto sorted = values;
+                std::ranges::sort(sorted);
+                const float level = sorted[static_cast<std::size_t>((1 - share) * static_cast<double>(sorted.size()))];
+                // A camera saturates at the end of its grey values.
+                std::ranges::transform(values, values.begin(), [&](float v) {
+                    return static_cast<float>(std::round(std::min(v / level, 1.0f) * levels) / levels);
+                });
+                const auto there = static_cast<double>(std::ranges::count(values, 1.0f));
+                EXPECT_EQ(saturation_of(values).level, 1) << levels << " " << contrast << " " << share;
+                EXPECT_EQ(saturation_of(values).share, there / static_cast<double>(values.size()));
+            }
+        }
+    }
+}
+
+// Values that only reach the end of the grey levels are unsaturated: a Gaussian tail, the turning points of a grating,
+// and levels that a stretched contrast fills twice.
+TEST(Saturation, IsNotFoundWhereNoValueIsCutOff) {
+    for (const double levels : {255.0, 65535.0}) {
+        for (const double contrast : {0.01, 0.03, 0.1, 0.4}) {
+            auto values = grey_values(contrast, levels);
+            EXPECT_EQ(saturation_of(values).share, 0) << levels << " " << contrast;
+            const float largest = std::ranges::max(values);
+            std::ranges::transform(values, values.begin(), [&](float v) {
+                return static_cast<float>(std::round(v / largest * 0.6 * levels) / (0.6 * levels));
+            });
+            EXPECT_EQ(saturation_of(values).share, 0) << levels << " " << contrast << ", stretched";
+        }
+        std::vector<float> grating(200'000);
+        for (std::size_t k = 0; k < grating.size(); ++k) {
+            const double value = 0.5 + 0.5 * std::sin(0.1 * static_cast<double>(k));
+            grating[k] = static_cast<float>(std::round(value * levels) / levels);
+        }
+        EXPECT_EQ(saturation_of(grating).share, 0) << levels;
+    }
+    EXPECT_EQ(saturation_of(std::vector<float>(2000, 0.5f)).share, 0); // one value everywhere
 }
 
 // Images of spots that every image shows, however far from focus, in noise. `path` gives the shift in pixels and the
