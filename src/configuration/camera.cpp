@@ -65,7 +65,10 @@ const NumberKey saturation = of_kinds({"stack", "first"}, NumberKey("saturation"
                                                                     "by a probe of few rays before the stack."));
 const IntegerKey frames("frames", 1, most_frames, 1, "Frames that are averaged to an image.");
 const IntegerKey seed("seed", 0, largest_seed, 1,
-                      "Seed of the camera's fixed patterns and, with trace.seed, of its noise.");
+                      "Seed of the camera's fixed patterns and, with noise_seed, of its noise.");
+const IntegerKey noise_seed("noise_seed", 0, largest_seed, Default::in_words("trace.seed"),
+                            "Seed of the camera's temporal noise. Stacks that differ in it alone are repeated images "
+                            "of the same light, which a sweep traces once.");
 
 camera::QuantumEfficiency read_efficiency(const Section& section, const optics::Spectrum& spectrum,
                                           const std::optional<camera::CameraOptions>& preset_values) {
@@ -108,7 +111,7 @@ const KeyTable& camera_keys() {
         .kind = "exposure",
         .keys = {&preset, &efficiency, &efficiency_wavelengths, &efficiencies, &full_well, &read_noise, &dark_current,
                  &gain, &offset, &bit_depth, &dark_signal, &photo_response, &exposure, &exposure_time, &saturation,
-                 &frames, &seed}};
+                 &frames, &seed, &noise_seed}};
     return table;
 }
 
@@ -149,6 +152,9 @@ void read_camera(const TomlTable& root, Configuration& configuration) {
     }
     camera.frames = static_cast<int>(section.integer(frames));
     camera.seed = static_cast<std::uint32_t>(section.integer(seed));
+    if (const auto given = section.integer_if_given(noise_seed)) {
+        configuration.noise_seed = static_cast<std::uint32_t>(*given);
+    }
     if (!(camera.offset < std::exp2(camera.bit_depth) - 1)) {
         section.fail(offset, fmt::format("a grey value below {}", std::exp2(camera.bit_depth) - 1),
                      "Choose a smaller offset, or more bits.");

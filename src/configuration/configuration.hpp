@@ -77,6 +77,7 @@ struct Configuration : ReadKeys {
     // to the tube lens begins.
     double shoulder = 0;
     std::optional<camera::CameraOptions> camera; // none: images are light
+    std::optional<std::uint32_t> noise_seed;     // camera.noise_seed; none: trace.seed
     bool estimator_is_chosen = false;            // trace.estimator is "auto": trace.estimator below is vkfv's choice
     std::optional<specimen::Description> specimen;
     std::optional<scan::ScanPlan> scan;

@@ -113,6 +113,29 @@ const RoughnessKeys& roughness_keys() {
 
 using physics::scatter_registry;
 
+struct PlacementKeys {
+    NumberKey x{"x_um", NumberRange::finite(), 0.0, "Displacement of the specimen from the axis along x."};
+    NumberKey y{"y_um", NumberRange::finite(), 0.0, "Displacement along y."};
+    NumberKey z{"z_um", NumberRange::finite(), 0.0, "Displacement towards the objective."};
+    NumberKey rotation{"rotation_deg", tilt_range_deg, 0.0, "Rotation about the axis, from +x towards +y."};
+    NumberKey tilt_x{"tilt_x_deg", NumberRange::between(-90, 90), 0.0,
+                     "Slope angle along x that a level surface gets. A specimen that is turned or tilted is traced as "
+                     "a mesh."};
+    NumberKey tilt_y{"tilt_y_deg", NumberRange::between(-90, 90), 0.0, "Slope angle along y that it gets."};
+    KeyTable table{.path = "specimen.placement",
+                   .presence = KeyTable::Presence::optional,
+                   .meaning = "Where the specimen lies: it is turned about the axis, then tilted, then displaced, with "
+                              "its reflectance. Not for representation = \"analytic\".",
+                   .subject = {},
+                   .kind = {},
+                   .keys = {&x, &y, &z, &rotation, &tilt_x, &tilt_y}};
+};
+
+const PlacementKeys& placement_keys() {
+    static const PlacementKeys keys;
+    return keys;
+}
+
 // Words as a sentence: "asymmetry: 0 is Lambertian" becomes "Asymmetry: 0 is Lambertian."
 std::string sentence_of(std::string_view words) {
     std::string sentence(words);
@@ -481,6 +504,16 @@ specimen::Roughness read_roughness(const TomlTable& table, const TomlTable& spec
     return roughness;
 }
 
+specimen::Placement read_placement(const TomlTable& table, ReadKeys& read) {
+    const auto& keys = placement_keys();
+    const Section section(table, keys.table, read);
+    return {
+        .shift = {from_um(section.number(keys.x)), from_um(section.number(keys.y)), from_um(section.number(keys.z))},
+        .rotation = section.number(keys.rotation) * radians_per_degree,
+        .tilt_x = section.number(keys.tilt_x) * radians_per_degree,
+        .tilt_y = section.number(keys.tilt_y) * radians_per_degree};
+}
+
 // Completes [specimen] by the keys of the standard that it names. The canonical text and the identity have these keys,
 // so that neither depends on the place where the standard was found.
 void take_standard(const TomlTable& table, const Configuration& configuration) {
@@ -512,8 +545,8 @@ void take_standard(const TomlTable& table, const Configuration& configuration) {
 } // namespace
 
 std::vector<const KeyTable*> specimen_key_tables() {
-    return {&specimen_keys().table, &roughness_keys().table, &material_keys().table, &lobe_keys().table,
-            &reflectance_keys()};
+    return {&specimen_keys().table, &roughness_keys().table, &material_keys().table,
+            &lobe_keys().table,     &reflectance_keys(),     &placement_keys().table};
 }
 
 void read_specimen(const TomlTable& root, Configuration& configuration) {
@@ -532,6 +565,9 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     description.material = read_material(table.table_or_empty("material"), read);
     if (const auto reflectance = table.optional_table("reflectance")) {
         description.reflectance = read_reflectance(*reflectance, read);
+    }
+    if (const auto placement = table.optional_table("placement")) {
+        description.placement = read_placement(*placement, read);
     }
     configuration.specimen = std::move(description);
 }

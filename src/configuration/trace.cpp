@@ -73,7 +73,7 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
     trace.seed = static_cast<std::uint32_t>(section.integer(seed));
     if (auto& camera = configuration.camera) {        // the camera's fixed patterns do not depend on trace.seed
         constexpr std::uint32_t golden = 0x9E3779B9u; // keeps sums of small seeds apart
-        camera->noise_seed = camera->seed + golden * trace.seed;
+        camera->noise_seed = camera->seed + golden * configuration.noise_seed.value_or(trace.seed);
     }
     trace.max_bounces = static_cast<int>(section.integer(max_bounces));
     trace.nonsequential = section.choice(mode);

@@ -1,6 +1,7 @@
 // The specimen as a configuration describes it, and the specimen made from it. Lengths in mm, angles in rad.
 #pragma once
 
+#include "specimen/placement.hpp"
 #include "specimen/roughness.hpp"
 #include "specimen/shape.hpp"
 #include "specimen/specimen.hpp"
@@ -21,10 +22,14 @@ struct Description {
     std::optional<Roughness> roughness{}; // added to all kinds but meshes
     Material material{};
     std::optional<Reflectance> reflectance{};
+    Placement placement{};
     SourceLocation where{}; // place of the [specimen] table or of its `file`, for messages
 
     bool operator==(const Description&) const = default;
 };
+
+// The feature to be measured, where it lies; none unless the specimen is a measurement standard.
+std::optional<dimensions::Feature> feature_of(const Description& description);
 
 // Makes the specimen. Throws InputError, before any point is made, for missing or damaged files (with the byte offset),
 // empty meshes, non-finite numbers, a footprint without extent, lengths that a device's floats cannot distinguish, and

@@ -85,7 +85,13 @@ Specimen make(const Description& d) {
         const Footprint r = footprint(specimen);
         specimen.reflectance = make_reflectance_map(*d.reflectance, {r.x_min, r.y_min, r.x_max, r.y_max}, d.where);
     }
+    place(specimen, d.placement, d.where);
+    check_extent(specimen, d.where);
     return specimen;
+}
+
+std::optional<dimensions::Feature> feature_of(const Description& d) {
+    return placed(feature_of(d.shape), d.placement);
 }
 
 } // namespace vkfv::specimen

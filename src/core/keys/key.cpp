@@ -109,6 +109,12 @@ IntegerKey::IntegerKey(std::string key_name, std::int64_t least, std::int64_t mo
           .range = NumberRange::within(static_cast<double>(least), static_cast<double>(most))},
       minimum(least), maximum(most), value(key_fallback) {}
 
+IntegerKey::IntegerKey(std::string key_name, std::int64_t least, std::int64_t most, Default key_fallback,
+                       std::string key_meaning)
+    : IntegerKey(std::move(key_name), least, most, std::optional<std::int64_t>(), std::move(key_meaning)) {
+    fallback = std::move(key_fallback);
+}
+
 IntegerPairKey::IntegerPairKey(std::string key_name, std::int64_t least, std::int64_t most, std::string key_meaning)
     : Key{.name = std::move(key_name),
           .type = Type::integer_pair,

@@ -72,6 +72,8 @@ class IntegerKey : public Key {
   public:
     IntegerKey(std::string name, std::int64_t minimum, std::int64_t maximum, std::optional<std::int64_t> fallback,
                std::string meaning);
+    // An integer with a default that is only described in words; it has no value if it is not given.
+    IntegerKey(std::string name, std::int64_t minimum, std::int64_t maximum, Default fallback, std::string meaning);
     std::int64_t minimum, maximum;
     std::optional<std::int64_t> value;
 };

@@ -87,6 +87,14 @@ std::int64_t Section::integer(const IntegerKey& key, std::int64_t fallback) cons
     return record(key, fmt::format("{}", value)), value;
 }
 
+std::optional<std::int64_t> Section::integer_if_given(const IntegerKey& key) const {
+    const auto value = table_.optional_integer(key.name, key.minimum, key.maximum);
+    if (value) {
+        record(key, fmt::format("{}", *value));
+    }
+    return value;
+}
+
 std::array<std::int64_t, 2> Section::integer_pair(const IntegerPairKey& key) const {
     const auto values = table_.integer_pair(key.name, key.minimum, key.maximum);
     record(key, values[0] == values[1] ? fmt::format("{}", values[0]) : fmt::format("[{}, {}]", values[0], values[1]));

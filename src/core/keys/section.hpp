@@ -46,6 +46,7 @@ class Section {
     std::int64_t integer(const IntegerKey& key) const;
     std::array<std::int64_t, 2> integer_pair(const IntegerPairKey& key) const;
     std::int64_t integer(const IntegerKey& key, std::int64_t fallback) const;
+    std::optional<std::int64_t> integer_if_given(const IntegerKey& key) const;
     bool boolean(const BooleanKey& key) const;
     std::vector<bool> booleans(const BooleansKey& key, const std::vector<bool>& fallback) const;
     std::string text(const TextKey& key) const;

@@ -268,7 +268,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
         origin["repaired"] = true;
     }
     auto evaluated = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, errors,
-                                       specimen::feature_of(configuration.specimen->shape));
+                                       specimen::feature_of(*configuration.specimen));
     auto found = warnings_of_noise(configuration, evaluated);
     append(found, warnings_of_brightness(evaluated));
     log_warnings(found);

@@ -149,7 +149,7 @@ KnownTruth truth_on_pixels(const optics::Instrument& instrument, const Configura
     grid.y0 += known.mapping.shift.y;
     known.heights.x0 = grid.x0;
     known.heights.y0 = grid.y0;
-    if (specimen::feature_of(configuration.specimen->shape)) {
+    if (specimen::feature_of(*configuration.specimen)) {
         known.undistorted =
             specimen::truth(specimen, grid.columns, grid.rows, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);
     }

@@ -123,7 +123,7 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
     }
     EvaluatedStack stack{
         .evaluation = evaluation_.finish(truth_.get(), configuration.band, errors_,
-                                         specimen::feature_of(configuration.specimen->shape)),
+                                         specimen::feature_of(*configuration.specimen)),
         .origin = {{"device", tracer.text()},
                    {"stack_digest", store.description().digest},
                    {"seed", configuration.trace.seed},

@@ -3,6 +3,7 @@
 #include "core/messages/error.hpp"
 #include "core/messages/stages.hpp"
 #include "core/threads/parallel_list.hpp"
+#include "core/toml/toml_tables.hpp"
 #include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/scene/host_memory.hpp"
@@ -14,8 +15,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <future>
-#include <sstream>
-#include <string_view>
 #include <utility>
 
 namespace vkfv::measurement {
@@ -23,24 +22,6 @@ namespace vkfv::measurement {
 namespace {
 
 namespace fs = std::filesystem;
-
-// An identity without the tables of these names and the tables below them.
-std::string without_tables(const std::string& identity, std::initializer_list<std::string_view> names) {
-    std::string text;
-    bool kept = true;
-    std::istringstream lines(identity);
-    for (std::string line; std::getline(lines, line);) {
-        if (line.starts_with('[')) {
-            const auto first = line.find_first_not_of('[');
-            const std::string_view table = std::string_view(line).substr(first, line.find(']') - first);
-            kept = std::ranges::none_of(names, [&](std::string_view name) {
-                return table == name || (table.starts_with(name) && table.substr(name.size()).starts_with('.'));
-            });
-        }
-        text += kept ? line + "\n" : "";
-    }
-    return text;
-}
 
 // Requests are not part of an identity, although they decide which device traces and how.
 std::string requests_of(const Configuration& configuration) {
