@@ -15,6 +15,7 @@ Command stack_command();
 Command merge_command();
 Command image_command();
 Command sweep_command();
+Command calibrate_command();
 Command topography_command();
 Command compare_command();
 Command surface_command();
@@ -48,6 +49,9 @@ void run_image(const CommandOptions& options);
 // Measures images or stacks for every combination of the parameters in [sweep], with a table, charts and a contact
 // sheet. Continues a sweep that was interrupted.
 void run_sweep(const CommandOptions& options);
+// Measures the metrological characteristics of the instrument on virtual standards, and writes a certificate. Continues
+// a calibration that was interrupted.
+void run_calibrate(const CommandOptions& options);
 // Judges the configuration, and prints warnings and figures of the instrument. Opens no device except for a forecast.
 void run_check(const CommandOptions& options);
 // Traces given rays through the imaging train, as CSV.

@@ -4,10 +4,13 @@ import fnmatch
 import importlib.machinery
 import importlib.util
 import json
+import tempfile
 import unittest
+from pathlib import Path
 
 import jsonschema
 import shared
+import vkfv
 
 SCHEMAS = shared.SOURCE / "assets" / "schemas"
 
@@ -46,7 +49,7 @@ def objects(node):
 
 class SchemaTest(unittest.TestCase):
     def test_schemas_are_schemas(self):
-        for name in ("results", "sweep", "image"):
+        for name in ("results", "sweep", "image", "certificate"):
             jsonschema.Draft202012Validator.check_schema(schema(name))
             for described in objects(schema(name)):
                 self.assertIn("additionalProperties", described)
@@ -99,6 +102,15 @@ class SchemaTest(unittest.TestCase):
 
     def test_image(self):
         validate(shared.small_image().figures, "image")  # test_commands.py has one with a camera
+
+
+    def test_certificate(self):
+        """One characteristic of a tenth of a field, and its figures by key."""
+        with tempfile.TemporaryDirectory() as folder:
+            certificate = vkfv.calibrate(shared.configuration(), out=Path(folder) / "c", only=["slope"], small=True)
+            validate(certificate.content, "certificate")
+            self.assertIn("slope_limit_deg", certificate.figures)
+            self.assertEqual(undocumented(Path(folder) / "c", "calibration"), [])
 
 
 class FilesTest(unittest.TestCase):

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <utility>
 
 namespace vkfv {
 
@@ -25,9 +27,28 @@ std::string remedy_text(const Warning& warning) {
     return warning.works.empty() ? fmt::format("[{}]", now) : fmt::format("[{}; works: {}]", now, warning.works);
 }
 
+namespace {
+
+std::mutex guard;             // of the next
+WarningsOnce* once = nullptr; // the innermost
+
+} // namespace
+
+WarningsOnce::WarningsOnce() {
+    const std::lock_guard lock(guard);
+    before_ = std::exchange(once, this);
+}
+
+WarningsOnce::~WarningsOnce() {
+    const std::lock_guard lock(guard);
+    once = before_;
+}
+
 void log_warnings(const std::vector<Warning>& warnings) {
+    const std::lock_guard lock(guard);
     for (const Warning& warning : warnings) {
-        spdlog::warn("{}", warning.sentence);
+        const bool again = once != nullptr && !once->codes_.insert(warning.code).second;
+        spdlog::log(again ? spdlog::level::debug : spdlog::level::warn, "{}", warning.sentence);
     }
 }
 

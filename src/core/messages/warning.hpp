@@ -1,6 +1,7 @@
 // Warnings in a form that other programs can act on.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,21 @@ std::string remedy_text(const Warning& warning);
 
 // Each sentence is a message of the log.
 void log_warnings(const std::vector<Warning>& warnings);
+
+// During its life log_warnings() warns once of each code: a series of measurements that are alike has the same warnings
+// over and over, which the results of each keep. Further ones are messages of the level "debug".
+class WarningsOnce {
+  public:
+    WarningsOnce();
+    ~WarningsOnce();
+    WarningsOnce(const WarningsOnce&) = delete;
+    WarningsOnce& operator=(const WarningsOnce&) = delete;
+
+  private:
+    friend void log_warnings(const std::vector<Warning>& warnings);
+    std::set<std::string> codes_;
+    WarningsOnce* before_;
+};
 
 // Appends the warnings of `further` that are not in the list already.
 void append(std::vector<Warning>& warnings, const std::vector<Warning>& further);

@@ -10,7 +10,8 @@ Everything is read from files; docs/python.md tells more.
 """
 
 from .array import Array
-from .commands import Image, check, evaluate, image, run, sweep
+from .certificate import Certificate
+from .commands import Image, calibrate, check, evaluate, image, run, sweep
 from .errors import DeviceError, Error, FolderInUse, InputError, RunError, RunWarning
 from .focus import focus_curves
 from .program import find_program
@@ -22,6 +23,7 @@ __version__ = "1.1.0"
 
 __all__ = [
     "Array",
+    "Certificate",
     "DeviceError",
     "Error",
     "FolderInUse",
@@ -32,6 +34,7 @@ __all__ = [
     "RunWarning",
     "Stack",
     "Sweep",
+    "calibrate",
     "check",
     "evaluate",
     "find_program",

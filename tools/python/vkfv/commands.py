@@ -9,10 +9,11 @@ RunWarning, and raises InputError, DeviceError, RunError or FolderInUse if the p
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from .array import Array
+from .certificate import Certificate
 from .overrides import settings
 from .program import Event, Outcome, call
 from .stack import Stack
@@ -102,6 +103,25 @@ def sweep(
     """Measures every combination of the parameters in [sweep] (`vkfv sweep`), or continues a sweep. out: the folder."""
     outcome = _call("sweep", config, overrides, out=out, options=("--json",), program=program, on_event=on_event)
     return Sweep(outcome.folder)
+
+
+def calibrate(
+    config: PathLike,
+    *,
+    out: PathLike | None = None,
+    only: Sequence[str] = (),
+    small: bool = False,
+    program: PathLike | None = None,
+    on_event: Callable[[Event], None] | None = None,
+    **overrides,
+) -> Certificate:
+    """Measures the metrological characteristics of an instrument on virtual standards (`vkfv calibrate`), or continues.
+
+    only: names of characteristics; all if empty. small: a part of the field and of the scan, with fewer repetitions.
+    """
+    options = (*(("--only", ",".join(only)) if only else ()), *(("--small",) if small else ()), "--json")
+    outcome = _call("calibrate", config, overrides, out=out, options=options, program=program, on_event=on_event)
+    return Certificate(outcome.folder)
 
 
 def evaluate(

@@ -1,0 +1,271 @@
+#include "measurement/calibration/calibrate.hpp"
+
+#include "core/files/digest.hpp"
+#include "core/files/result_folder.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/heartbeat.hpp"
+#include "core/messages/json_text.hpp"
+#include "core/messages/warning.hpp"
+#include "core/toml/toml_tables.hpp"
+#include "measurement/calibration/certificate.hpp"
+#include "measurement/scene/assembly.hpp"
+#include "measurement/scene/disk_space.hpp"
+#include "measurement/sweep/sweep_rows.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <sstream>
+
+namespace vkfv::measurement {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int small_side = 160, small_lateral_side = 320, small_images = 31;
+constexpr double small_paths = 64; // a pixel, backward, where the configuration traces forward
+
+// The instrument that is calibrated: a configuration without a specimen.
+struct Instrument {
+    std::string toml;
+    Conditions conditions;
+    std::string identity_digest;
+};
+
+// The canonical text with a square part of the detector's middle.
+std::string with_pixels(const std::string& toml, int side, double pixel_um) {
+    std::string text;
+    bool of_detector = false;
+    std::istringstream lines(toml);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with('[')) {
+            of_detector = line == "[detector]";
+            text += line + "\n";
+            text += of_detector ? fmt::format("pixels = {}\npixel_um = {:.12g}\n", side, pixel_um) : "";
+            continue;
+        }
+        const bool of_size =
+            of_detector && std::ranges::any_of(std::array{"pixels", "pixel_um", "size_mm", "format", "camera"},
+                                               [&](const std::string& key) { return line.starts_with(key + " "); });
+        text += of_size ? "" : line + "\n";
+    }
+    return text;
+}
+
+// The middle of the configuration's field and scan, as far as a small calibration looks at them.
+std::string small_instrument(const Configuration& base, bool lateral) {
+    const ImageSize pixels = base.instrument.detector_pixels;
+    const int side = std::min({lateral ? small_lateral_side : small_side, pixels.columns, pixels.rows});
+    std::string toml = without_tables(base.canonical, {"specimen"});
+    toml = with_pixels(toml, side, base.instrument.detector_width / pixels.columns * um_per_mm);
+    const bool backward = base.trace.estimator == trace::Estimator::backward;
+    const double paths =
+        backward ? static_cast<double>(base.trace.rays) / static_cast<double>(pixels.count()) : small_paths;
+    std::vector<TomlOverride> overrides = {
+        {"trace.rays", fmt::format("{:.0f}", std::ceil(paths * side * side)), "calibrate"}};
+    if (!backward) {
+        overrides.push_back({"trace.estimator", "\"auto\"", "calibrate"});
+    }
+    const auto positions = base.scan->positions();
+    if (positions.size() > small_images) {
+        const double step = positions[1] - positions[0], middle = 0.5 * (positions.front() + positions.back());
+        const double half = 0.5 * (small_images - 1) * step;
+        overrides.push_back({"scan.z_start_um", fmt::format("{:.9g}", (middle - half) * um_per_mm), "calibrate"});
+        overrides.push_back({"scan.z_stop_um", fmt::format("{:.9g}", (middle + half) * um_per_mm), "calibrate"});
+    }
+    // Read once more, so that the text has the overrides' values.
+    const auto read = read_configuration(
+        TomlTable::parse(toml + "[specimen]\nkind = \"plane\"\nsize_mm = 1.0\n", base.file, overrides));
+    return without_tables(read.canonical, {"specimen"});
+}
+
+Configuration with_specimen(const Instrument& instrument, const fs::path& file, const Trial& trial,
+                            const fs::path& folder) {
+    auto overrides = trial.overrides;
+    overrides.push_back({"output.directory", toml_quoted(folder.string()), "calibrate"});
+    return read_configuration(TomlTable::parse(instrument.toml + "\n" + trial.specimen, file, overrides));
+}
+
+Instrument instrument_of(const Configuration& base, bool small, bool lateral) {
+    Instrument instrument{.toml =
+                              small ? small_instrument(base, lateral) : without_tables(base.canonical, {"specimen"})};
+    const Configuration configuration = read_configuration(
+        TomlTable::parse(instrument.toml + "[specimen]\nkind = \"plane\"\nsize_mm = 1.0\n", base.file));
+    const auto assembled = assemble_for_figures(configuration);
+    const auto& first_order = assembled.first_order;
+    const auto positions = configuration.scan->positions();
+    const double aperture = first_order.numerical_aperture;
+    const double range = positions.back() - positions.front();
+    instrument.conditions = {.pixels = configuration.instrument.detector_pixels,
+                             .pitch = first_order.pixel_pitch,
+                             .window = configuration.topography.window_px * first_order.pixel_pitch,
+                             .resolution = 0.61 * configuration.instrument.spectrum.reference_um * mm_per_um / aperture,
+                             .lowest = positions.front(),
+                             .range = range,
+                             .step = positions.size() > 1 ? positions[1] - positions[0] : 0,
+                             .curve_deviation = focus_curve_deviation(configuration, first_order),
+                             .blur = 0.5 * range * aperture / std::sqrt(std::max(0.01, 1 - aperture * aperture)),
+                             .camera = configuration.camera.has_value(),
+                             .small = small,
+                             .seed = configuration.trace.seed};
+    instrument.identity_digest = Digest().add(without_tables(configuration.identity, {"specimen"})).sha256();
+    return instrument;
+}
+
+std::vector<const Characteristic*> chosen(const std::vector<std::string>& only) {
+    std::vector<const Characteristic*> list;
+    std::vector<std::string> names;
+    for (const Characteristic& one : characteristics()) {
+        names.push_back(one.name);
+        if (only.empty() || std::ranges::find(only, one.name) != only.end()) {
+            list.push_back(&one);
+        }
+    }
+    for (const std::string& name : only) {
+        if (std::ranges::find(names, name) == names.end()) {
+            throw InputError({.where = {.file = "command line"},
+                              .key = "--only",
+                              .found = name,
+                              .expected = fmt::format("characteristics among {}", fmt::join(names, ", ")),
+                              .remedy = "Correct the name."});
+        }
+    }
+    return list;
+}
+
+double median_of(const Grid<double>& values) {
+    std::vector<double> finite;
+    std::ranges::copy_if(values.values, std::back_inserter(finite), [](double v) { return std::isfinite(v); });
+    if (finite.empty()) {
+        return surface::undefined;
+    }
+    const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
+    std::ranges::nth_element(finite, middle);
+    return *middle;
+}
+
+TrialResult result_of(const std::string& name, const Evaluation& evaluation) {
+    const auto& values = evaluation.topography.height.height.values;
+    const auto measured = std::ranges::count_if(values, [](double height) { return std::isfinite(height); });
+    return {.name = name,
+            .heights = evaluation.topography.height,
+            .truth = evaluation.truth.value(),
+            .uncertainty = evaluation.topography.height_uncertainty,
+            .height_noise = median_of(evaluation.topography.height_noise),
+            .measured_share = static_cast<double>(measured) / static_cast<double>(values.size()),
+            .dimensions = evaluation.dimensions};
+}
+
+// A characteristic with its trials and their configurations.
+struct Plan {
+    const Characteristic* characteristic;
+    const Instrument* instrument;
+    std::vector<Trial> trials;
+    std::vector<std::string> remarks;
+};
+
+// Refuses a calibration whose files will not fit on the disk.
+void require_space_for(const std::vector<std::vector<Configuration>>& rows, const fs::path& folder) {
+    double needed = 0;
+    for (const auto& row : rows) {
+        for (const Configuration& configuration : row) {
+            if (fs::exists(configuration.output_directory / "results.json")) {
+                continue;
+            }
+            needed += static_cast<double>(image_bytes(configuration.instrument.detector_pixels)) *
+                          static_cast<double>(configuration.scan->positions().size()) +
+                      static_cast<double>(results_bytes(configuration));
+        }
+    }
+    const auto free = free_bytes(folder);
+    spdlog::info("The stacks take up to {} of the disk, which has {} free",
+                 bytes_text(static_cast<std::uint64_t>(needed)), bytes_text(free));
+    if (needed > static_cast<double>(free)) {
+        throw RunError(fmt::format("the stacks of the calibration take {}, and {} has {} free. Choose another --out, "
+                                   "fewer characteristics (--only), or --small",
+                                   bytes_text(static_cast<std::uint64_t>(needed)), folder.string(), bytes_text(free)));
+    }
+}
+
+} // namespace
+
+CalibrationResult calibrate(const CalibrationRequest& request, Progress& progress) {
+    const auto list = chosen(request.only);
+    const Configuration base = load_configuration(request.file, request.overrides);
+    const Instrument vertical = instrument_of(base, request.small, false);
+    const Instrument lateral = request.small ? instrument_of(base, true, true) : vertical;
+    ResultFolder results(base.output_directory);
+    std::vector<Plan> plans;
+    std::vector<std::vector<Configuration>> rows;
+    for (const Characteristic* characteristic : list) {
+        Plan plan{.characteristic = characteristic, .instrument = characteristic->lateral ? &lateral : &vertical};
+        plan.trials = characteristic->trials(plan.instrument->conditions, plan.remarks);
+        for (const Trial& trial : plan.trials) {
+            rows.push_back({with_specimen(*plan.instrument, base.file, trial,
+                                          results.path() / characteristic->name / trial.name)});
+        }
+        plans.push_back(std::move(plan));
+    }
+    require_space_for(rows, results.path());
+    const std::size_t stacks = rows.size();
+    SweptStacks swept(std::move(rows));
+    spdlog::info("{}", swept.plan());
+    const CountedWork work(swept.images());
+    const WarningsOnce warnings_once; // the report of each stack has its own
+    Certificate certificate{.program = request.program,
+                            .title = request.file.stem().string(),
+                            .identity_digest = vertical.identity_digest,
+                            .conditions = vertical.conditions,
+                            .configuration = vertical.toml};
+    std::size_t number = 0;
+    for (const Plan& plan : plans) {
+        CertificateEntry entry{.characteristic = plan.characteristic};
+        std::vector<TrialResult> trials;
+        for (const Trial& trial : plan.trials) {
+            spdlog::info("{} of {}: {}, {}", ++number, stacks, plan.characteristic->name, trial.name);
+            const auto row = swept.measure_next(
+                progress, [&](const StackResult& stack) { trials.push_back(result_of(trial.name, stack.evaluation)); });
+            if (!row.device.empty() &&
+                std::ranges::find(certificate.devices, row.device) == certificate.devices.end()) {
+                certificate.devices.push_back(row.device);
+            }
+            entry.trials.push_back((fs::path(plan.characteristic->name) / trial.name).generic_string());
+        }
+        if (!trials.empty()) {
+            entry.findings = plan.characteristic->evaluate(plan.instrument->conditions, trials);
+        }
+        entry.findings.remarks.insert(entry.findings.remarks.begin(), plan.remarks.begin(), plan.remarks.end());
+        certificate.entries.push_back(std::move(entry));
+    }
+    CalibrationResult result{.certificate = certificate_json(certificate), .folder = results.path()};
+    results.write("certificate.json", json_text(result.certificate) + "\n");
+    results.write("certificate.html", certificate_page(certificate));
+    results.write_checksums();
+    return result;
+}
+
+std::string summary(const CalibrationResult& result) {
+    std::string text;
+    for (const auto& characteristic : result.certificate.at("characteristics")) {
+        text += characteristic.at("title").get<std::string>() + "\n";
+        for (const auto& figure : characteristic.at("figures")) {
+            const std::string unit = figure.at("unit");
+            const double value = figure.at("value"), expanded = figure.at("expanded_uncertainty_95");
+            text += fmt::format("  {:<66} ", figure.at("title").get<std::string>() + ":");
+            text += std::isfinite(value) ? fmt::format("{:.6g}", value) : "not determined";
+            text += std::isfinite(expanded) && std::isfinite(value) ? fmt::format(" +- {:.2g}", expanded) : "";
+            text += unit.empty() || !std::isfinite(value) ? "\n" : " " + unit + "\n";
+        }
+        for (const auto& remark : characteristic.at("remarks")) {
+            text += "  " + remark.get<std::string>() + "\n";
+        }
+    }
+    return text + "+-: expanded uncertainty, 95 %. " + not_traceable + "\n";
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,93 @@
+#include "measurement/calibration/standards.hpp"
+
+#include "core/mathematics/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vkfv::measurement {
+
+std::string um(double mm) {
+    return fmt::format("{:.9g}", mm * um_per_mm);
+}
+
+std::string printed(const Conditions& conditions, double contrast, std::uint32_t print_seed) {
+    constexpr double mean = 0.5;
+    // A grain of one and a half pixels, or of the resolution of the optics where that is coarser.
+    const double grain = 1.5 * std::max(conditions.pitch, conditions.resolution);
+    return fmt::format("[specimen.material]\nscatter = \"lambertian\"\n"
+                       "[specimen.reflectance]\nkind = \"noise\"\npitch_um = {}\ncorrelation_length_um = {}\n"
+                       "mean = {}\nstandard_deviation = {}\nseed = {}\n",
+                       um(grain / 3), um(grain), mean, contrast * mean, print_seed);
+}
+
+std::string standard_of(const Conditions& conditions, const std::string& kind, const std::string& keys,
+                        double facet_pitch) {
+    constexpr double margin = 1.1;
+    const double side = margin * conditions.longer_field() + 2 * conditions.blur;
+    return fmt::format("[specimen]\nkind = \"{}\"\nsize_mm = {:.9g}\n{}{}", kind, side,
+                       facet_pitch > 0 ? "pitch_um = " + um(facet_pitch) + "\n" : "representation = \"analytic\"\n",
+                       keys);
+}
+
+std::string placed_at(double x, double y, double z, double rotation, double tilt_x, double tilt_y) {
+    const auto degrees = [](double angle) { return fmt::format("{:.9g}", angle / radians_per_degree); };
+    return fmt::format("[specimen.placement]\nx_um = {}\ny_um = {}\nz_um = {}\nrotation_deg = {}\ntilt_x_deg = {}\n"
+                       "tilt_y_deg = {}\n",
+                       um(x), um(y), um(z), degrees(rotation), degrees(tilt_x), degrees(tilt_y));
+}
+
+std::vector<TomlOverride> repetition(const Conditions& conditions, int k) {
+    return {{conditions.camera ? "camera.noise_seed" : "trace.seed",
+             fmt::format("{}", conditions.seed + static_cast<std::uint32_t>(k)), "calibrate"}};
+}
+
+const StandardDimension* dimension(const TrialResult& result, const std::string& name) {
+    const auto found = std::ranges::find_if(
+        result.dimensions, [&](const StandardDimension& one) { return one.measured.name.starts_with(name); });
+    return found == result.dimensions.end() || !std::isfinite(found->measured.value) ? nullptr : &*found;
+}
+
+double uncertainty_of(const StandardDimension& dimension) {
+    double square = 0;
+    for (const double part :
+         {dimension.measured.standard_error, dimension.brightness_uncertainty, dimension.window_uncertainty}) {
+        square += std::isfinite(part) ? part * part : 0;
+    }
+    return std::sqrt(square);
+}
+
+Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
+    const auto count = static_cast<double>(x.size());
+    Line line;
+    if (x.size() < 3) {
+        return line;
+    }
+    double mean_x = 0, mean_y = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        mean_x += x[k] / count;
+        mean_y += y[k] / count;
+    }
+    double xx = 0, xy = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        xx += (x[k] - mean_x) * (x[k] - mean_x);
+        xy += (x[k] - mean_x) * (y[k] - mean_y);
+    }
+    line.slope = xy / xx;
+    line.offset = mean_y - line.slope * mean_x;
+    line.degrees_of_freedom = count - 2;
+    double squares = 0;
+    line.farthest = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const double off = y[k] - line.offset - line.slope * x[k];
+        squares += off * off;
+        line.farthest = std::max(line.farthest, std::abs(off));
+    }
+    line.scatter = std::sqrt(squares / line.degrees_of_freedom);
+    line.slope_uncertainty = line.scatter / std::sqrt(xx);
+    return line;
+}
+
+} // namespace vkfv::measurement

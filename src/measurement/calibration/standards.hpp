@@ -1,0 +1,49 @@
+// The standards of a virtual calibration as TOML, and what their evaluations share.
+#pragma once
+
+#include "measurement/calibration/characteristic.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// Contrast of the print on all standards but those whose contrast is varied: standard deviation of the reflectance over
+// its mean.
+inline constexpr double usual_contrast = 0.5;
+
+// The tables below [specimen] of a Lambertian surface with a print, whose grain the optics and the pixels resolve.
+std::string printed(const Conditions& conditions, double contrast, std::uint32_t print_seed);
+
+// The [specimen] of a kind, whose keys are given as lines; its square is larger than the field by the blur.
+// facet_pitch: mm; 0: the surface is a function.
+std::string standard_of(const Conditions& conditions, const std::string& kind, const std::string& keys,
+                        double facet_pitch);
+
+// A table [specimen.placement]. mm, rad.
+std::string placed_at(double x, double y, double z, double rotation = 0, double tilt_x = 0, double tilt_y = 0);
+
+// The overrides of repetition k of a measurement: other noise of the camera on the same light, or without a camera
+// other rays.
+std::vector<TomlOverride> repetition(const Conditions& conditions, int k);
+
+// A length in um as TOML.
+std::string um(double mm);
+
+// The dimension whose name begins so; null if the trial has none.
+const StandardDimension* dimension(const TrialResult& result, const std::string& name);
+// Its standard uncertainty (mm): the scatter of the heights and the effects that move all heights alike.
+double uncertainty_of(const StandardDimension& dimension);
+
+// A straight line through points by least squares. Uncertainties are those of the scatter about the line.
+struct Line {
+    double offset = surface::undefined, slope = surface::undefined;
+    double slope_uncertainty = surface::undefined;
+    double scatter = surface::undefined;  // standard deviation of a point about the line
+    double farthest = surface::undefined; // largest distance of a point from it
+    double degrees_of_freedom = 0;
+};
+Line line_through(const std::vector<double>& x, const std::vector<double>& y);
+
+} // namespace vkfv::measurement

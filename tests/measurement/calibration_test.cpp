@@ -1,0 +1,256 @@
+// The characteristics of a virtual calibration, on heights with known errors in place of traced ones.
+#include "core/mathematics/units.hpp"
+#include "measurement/calibration/characteristic.hpp"
+#include "measurement/calibration/standards.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <regex>
+
+namespace vkfv::measurement {
+namespace {
+
+Conditions conditions() {
+    return {.pixels = ImageSize::square(128),
+            .pitch = 0.001,
+            .window = 0.007,
+            .resolution = 0.0012,
+            .lowest = -0.03,
+            .range = 0.06,
+            .step = 0.001,
+            .curve_deviation = 0.003,
+            .blur = 0.01,
+            .camera = true,
+            .small = false,
+            .seed = 1};
+}
+
+const CertificateFigure& figure(const Findings& findings, const std::string& key) {
+    const auto found = std::ranges::find(findings.figures, key, &CertificateFigure::key);
+    if (found == findings.figures.end()) {
+        throw std::out_of_range("no figure " + key);
+    }
+    return *found;
+}
+
+std::vector<Trial> trials_of(const Characteristic& characteristic) {
+    std::vector<std::string> remarks;
+    auto trials = characteristic.trials(conditions(), remarks);
+    EXPECT_TRUE(remarks.empty());
+    EXPECT_FALSE(trials.empty());
+    return trials;
+}
+
+surface::HeightMap map_of(const std::function<double(double x, double y)>& height) {
+    const auto c = conditions();
+    surface::HeightMap map{.height = Grid<double>(c.pixels.columns, c.pixels.rows),
+                           .x0 = -0.0635,
+                           .y0 = -0.0635,
+                           .pitch_x = c.pitch,
+                           .pitch_y = c.pitch};
+    for (int row = 0; row < map.rows(); ++row) {
+        for (int column = 0; column < map.columns(); ++column) {
+            map.height(column, row) = height(map.x(column), map.y(row));
+        }
+    }
+    return map;
+}
+
+TEST(Calibration, NoiseIsThatOfTheHeightsAndNotTheirForm) {
+    const auto characteristic = measurement_noise();
+    constexpr double sigma = 20e-6; // mm
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal(0, sigma);
+    std::vector<TrialResult> results;
+    for (const Trial& trial : trials_of(characteristic)) {
+        // The form, 25 times the noise, is common to all measurements; each has a tilt of its own.
+        const double tilt = 1e-3 * normal(random) / sigma;
+        results.push_back({.name = trial.name, .heights = map_of([&](double x, double y) {
+                                                   return 500e-6 * std::sin(60 * x) * std::cos(50 * y) + tilt * x +
+                                                          normal(random);
+                                               })});
+    }
+    const auto findings = characteristic.evaluate(conditions(), results);
+    const auto& raw = figure(findings, "N_M_at_50_percent_nm");
+    EXPECT_NEAR(raw.value, 20, 3 * raw.standard_uncertainty + 0.1);
+    EXPECT_LT(raw.standard_uncertainty, 0.5);
+    // White noise under the S-filter: 1 / sqrt(2 pi) over the filter's standard deviation in pixels, L / sqrt(2 pi)
+    // times sqrt(ln 2 / pi) for a nesting index L; sigma times pitch / (sqrt(4 pi) s). 17.5 pixels: s = 3.28.
+    const double s = conditions().s_filter() / conditions().pitch * std::sqrt(std::log(2.0) / pi / (2 * pi));
+    EXPECT_NEAR(figure(findings, "N_M_filtered_at_50_percent_nm").value, 20 / (std::sqrt(4 * pi) * s), 0.25);
+    EXPECT_NEAR(raw.expanded_uncertainty() / raw.standard_uncertainty, 2.262, 1e-3); // Student's, 9 degrees of freedom
+}
+
+TEST(Calibration, FlatnessFallsToTheFormAsPlacesAreAdded) {
+    const auto characteristic = flatness_deviation();
+    constexpr double sag = 300e-6; // mm, from the middle to the corner
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal(0, 50e-6);
+    const auto with_sag = [&](double depth) {
+        std::vector<TrialResult> results;
+        for (const Trial& trial : trials_of(characteristic)) {
+            results.push_back({.name = trial.name, .heights = map_of([&](double x, double y) {
+                                                       return depth * (x * x + y * y) / (2 * 0.0635 * 0.0635) +
+                                                              normal(random);
+                                                   })});
+        }
+        return characteristic.evaluate(conditions(), results);
+    };
+    const auto curved = with_sag(sag);
+    const double found = figure(curved, "z_FLT_nm").value, alone = figure(curved, "z_FLT_by_scatter_nm").value;
+    EXPECT_NEAR(found, 300, alone + 0.1 * 300);
+    EXPECT_LT(alone, 30);
+    // Without a form the range is that of the scatter.
+    const auto flat = with_sag(0);
+    EXPECT_NEAR(figure(flat, "z_FLT_nm").value / figure(flat, "z_FLT_by_scatter_nm").value, 1, 0.25);
+    // Ranges of fewer places are larger, as the square root of the number.
+    EXPECT_GT(flat.tables.front().rows.front()[1], 1.5 * flat.tables.front().rows.back()[1]);
+}
+
+double depth_in(const Trial& trial) { // mm
+    std::smatch found;
+    if (!std::regex_search(trial.specimen, found, std::regex("\ndepth_um = ([0-9.e+-]+)"))) {
+        throw std::out_of_range("no depth in " + trial.specimen);
+    }
+    return std::stod(found[1]) / um_per_mm;
+}
+
+Findings amplification_of(const std::function<double(double depth)>& measured, double scatter, unsigned seed) {
+    const auto characteristic = vertical_amplification();
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, scatter);
+    std::vector<TrialResult> results;
+    for (const Trial& trial : trials_of(characteristic)) {
+        StandardDimension depth{.measured = {.name = "groove depth"}, .truth = depth_in(trial)};
+        depth.measured.value = measured(depth.truth) + normal(random);
+        depth.measured.standard_error = scatter;
+        results.push_back({.name = trial.name, .dimensions = {depth}});
+    }
+    return characteristic.evaluate(conditions(), results);
+}
+
+// An error of five standard uncertainties is found within its expanded uncertainty, and excluded where it is not there.
+TEST(Calibration, AnErrorOfTheScaleIsFound) {
+    int found = 0, excluded = 0, excluded_by_chance = 0;
+    constexpr int seeds = 20;
+    const auto lies_outside = [](const CertificateFigure& alpha, double value) {
+        return std::abs(alpha.value - value) > alpha.expanded_uncertainty();
+    };
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+        const auto with_error = amplification_of([](double depth) { return 1.002 * depth; }, 20e-6, seed);
+        const auto& alpha = figure(with_error, "alpha_z");
+        EXPECT_LT(alpha.expanded_uncertainty(), 1.4e-3);
+        found += lies_outside(alpha, 1.002) ? 0 : 1;
+        excluded += lies_outside(alpha, 1) ? 1 : 0;
+        const auto without = amplification_of([](double depth) { return depth; }, 20e-6, seed);
+        excluded_by_chance += lies_outside(figure(without, "alpha_z"), 1) ? 1 : 0;
+    }
+    EXPECT_GE(found, 17);
+    EXPECT_GE(excluded, 17);
+    EXPECT_LE(excluded_by_chance, 3);
+}
+
+// For grooves about the middle of the scan a cubic error a (z / h)^3 of the scale changes a depth d by 2 a (d / 2h)^3.
+// What a line with an offset leaves of it at the seven depths is computed here once more.
+TEST(Calibration, ACubicErrorOfTheScaleIsItsDeviationFromTheLine) {
+    constexpr double a = 200e-6; // mm, at the ends of the usable range
+    const double half = 0.5 * conditions().usable_range();
+    const auto cubic = [&](double depth) { return depth + 2 * a * std::pow(depth / (2 * half), 3); };
+    const auto findings = amplification_of(cubic, 1e-9, 1);
+    std::vector<double> x, y;
+    for (int k = 0; k < 7; ++k) {
+        x.push_back(0.05 + 0.85 * k / 6);
+        y.push_back(2 * std::pow(x.back(), 3));
+    }
+    double mean_x = 0, mean_y = 0, xx = 0, xy = 0, most = 0;
+    for (int k = 0; k < 7; ++k) {
+        mean_x += x[k] / 7;
+        mean_y += y[k] / 7;
+    }
+    for (int k = 0; k < 7; ++k) {
+        xx += (x[k] - mean_x) * (x[k] - mean_x);
+        xy += (x[k] - mean_x) * (y[k] - mean_y);
+    }
+    for (int k = 0; k < 7; ++k) {
+        most = std::max(most, std::abs(y[k] - mean_y - xy / xx * (x[k] - mean_x)));
+    }
+    EXPECT_NEAR(most, 0.32, 0.005);
+    EXPECT_NEAR(figure(findings, "l_z_nm").value, 200 * most, 0.01);
+    EXPECT_LT(figure(amplification_of([](double depth) { return depth; }, 1e-9, 1), "l_z_nm").value, 0.01);
+}
+
+TEST(Calibration, RepeatabilityAndReproducibilityArePartedAsTheyWereAdded) {
+    const auto characteristic = repeatability();
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    constexpr double within = 10e-6, between = 40e-6; // mm
+    std::vector<TrialResult> results;
+    double place_error = 0;
+    const auto trials = trials_of(characteristic);
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+        place_error = trials[k].name.ends_with("repeat_00") ? between * normal(random) : place_error;
+        StandardDimension depth{.measured = {.name = "groove depth"}, .truth = 0.01};
+        depth.measured.value = 0.01 + place_error + within * normal(random);
+        results.push_back({.name = trials[k].name, .dimensions = {depth}});
+    }
+    const auto findings = characteristic.evaluate(conditions(), results);
+    const auto& repeated = figure(findings, "repeatability_nm");
+    const auto& reproduced = figure(findings, "reproducibility_nm");
+    EXPECT_NEAR(repeated.value, 10, 3 * repeated.standard_uncertainty);
+    EXPECT_NEAR(reproduced.value, std::hypot(10, 40), 3 * reproduced.standard_uncertainty);
+    EXPECT_GT(reproduced.value, 2 * repeated.value);
+}
+
+TEST(Calibration, ASlopeIsLimitedWhereItsPointsAreWrongOrMissing) {
+    const auto characteristic = slope_limit();
+    std::vector<TrialResult> results;
+    double tilt = 0;
+    for (const Trial& trial : trials_of(characteristic)) {
+        const double slope = std::tan(tilt * radians_per_degree);
+        TrialResult result{.name = trial.name,
+                           .truth = map_of([&](double x, double) { return slope * x; }),
+                           .uncertainty = Grid<double>(128, 128, 1e-4)};
+        result.heights = result.truth;
+        if (tilt > 32) { // every tenth point is off by four uncertainties
+            for (std::size_t k = 0; k < result.heights.height.values.size(); k += 10) {
+                result.heights.height.values[k] += 4e-4;
+            }
+        }
+        results.push_back(std::move(result));
+        tilt += 5;
+    }
+    const auto findings = characteristic.evaluate(conditions(), results);
+    EXPECT_EQ(figure(findings, "slope_limit_deg").value, 30);
+    EXPECT_NEAR(figure(findings, "most_wrong_percent").value, 10, 1);
+}
+
+// The transfer of a box window of W at a period P is sinc(W / P), which is one half at P = 1.657 W.
+TEST(Calibration, TheResolutionIsThatOfAKnownTransfer) {
+    auto c = conditions();
+    c.pixels = ImageSize::square(320);
+    const auto characteristic = lateral_resolution();
+    std::vector<std::string> remarks;
+    const auto trials = characteristic.trials(c, remarks);
+    std::vector<TrialResult> results;
+    for (const Trial& trial : trials) {
+        std::smatch found;
+        TrialResult result{.name = trial.name};
+        if (std::regex_search(trial.name, found, std::regex("period_([0-9]+)_px"))) {
+            const double x = pi * 7 / std::stod(found[1]);
+            result.dimensions.push_back(
+                {.measured = {.name = "amplitude", .value = 1e-3 * std::sin(x) / x}, .truth = 1e-3});
+        } else {
+            result.heights = result.truth = map_of([](double, double) { return 0.0; });
+        }
+        results.push_back(std::move(result));
+    }
+    const auto findings = characteristic.evaluate(c, results);
+    EXPECT_NEAR(figure(findings, "D_LIM_um").value, 1.657 * 7, 0.3); // linear between 10 and 14 um
+}
+
+} // namespace
+} // namespace vkfv::measurement
