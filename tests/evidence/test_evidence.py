@@ -64,9 +64,9 @@ class PagesTest(unittest.TestCase):
         self.assertEqual(len(twin.place_problems()), 1)
 
     def test_a_changed_record_is_found(self):
-        twin = copy.copy(PAGES["tutorial"])
+        twin = copy.copy(PAGES["camera"])
         twin.records = copy.deepcopy(twin.records)
-        twin.records["repeats"]["tables"]["lights"]["rows"][0][0] += 0.001
+        twin.records["clip"]["tables"]["levels"]["rows"][0][0] += 1
         self.assertEqual(len(twin.place_problems()), 1)
 
     def test_comments_that_nothing_declares_and_figures_without_a_place_are_found(self):
