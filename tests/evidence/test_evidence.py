@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every figure, table and picture that a page of docs/evidence states is that of its record. Runs no program.
+"""Every figure, table and picture that a page of docs/evidence states is that of its record, and all pages are short. Runs no program.
 
 Each comparison has a wrong twin, which it must reject: a page with one digit changed, a record made older, a picture of other bytes.
 Records that are older than what they depend on are listed at the end; they fail nothing.
@@ -64,9 +64,9 @@ class PagesTest(unittest.TestCase):
         self.assertEqual(len(twin.place_problems()), 1)
 
     def test_a_changed_record_is_found(self):
-        twin = copy.copy(PAGES["tutorial"])
+        twin = copy.copy(PAGES["camera"])
         twin.records = copy.deepcopy(twin.records)
-        twin.records["repeats"]["tables"]["lights"]["rows"][0][0] += 0.001
+        twin.records["clip"]["tables"]["levels"]["rows"][0][0] += 1
         self.assertEqual(len(twin.place_problems()), 1)
 
     def test_comments_that_nothing_declares_and_figures_without_a_place_are_found(self):
@@ -256,6 +256,38 @@ class ReadingTest(unittest.TestCase):
         self.assertTrue(evidence.near(9.681, 9.684, {}, "{:.2f}"))
         self.assertFalse(evidence.near(9.681, 9.686, {}, "{:.2f}"))
         self.assertFalse(evidence.near(None, 9.68, {"tolerance": 1}, "{:.2f}"))
+
+
+MOST_WORDS = 28000  # of all pages but these, which programs write from declarations
+OF_PROGRAMS = {"commands.md", "configuration.md", "outputs.md"}
+MOST_LINES_OF_CHANGELOG = 150
+
+
+def words_of_pages(folder):
+    """The words of all pages that hands write, as `wc -w` counts them; those of notebooks, and pages not yet in git, count too."""
+    return sum(len(page.read_text(encoding="utf-8").split()) for page in folder.rglob("*.md")
+               if page.relative_to(folder).as_posix() not in OF_PROGRAMS)
+
+
+class TheDocumentsAreShort(unittest.TestCase):
+    def test_pages_have_no_more_words_than_allowed(self):
+        words = words_of_pages(SOURCE / "docs")
+        self.assertLessEqual(words, MOST_WORDS, "cut docs/*.md and docs/notebooks: CONTRIBUTING.md, section Documents")
+
+    def test_contributing_states_this_limit(self):
+        self.assertIn(f"{MOST_WORDS:,} words".replace(",", " "), (SOURCE / "CONTRIBUTING.md").read_text(encoding="utf-8"))
+
+    def test_words_of_every_page_but_the_generated_count(self):
+        with tempfile.TemporaryDirectory(prefix="vkfv_evidence_test_") as name:
+            folder = Path(name)
+            (folder / "notebooks").mkdir()
+            for page, text in (("one.md", "# One\n| a | ± |\n"), ("notebooks/two.md", "two words\n"), ("notebooks/outputs.md", "no reference\n"),
+                               ("commands.md", "a b c\n"), ("notes.txt", "d e f\n")):
+                (folder / page).write_text(text, encoding="utf-8")
+            self.assertEqual(words_of_pages(folder), 11)
+
+    def test_the_changelog_has_no_more_lines_than_allowed(self):
+        self.assertLessEqual(len((SOURCE / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()), MOST_LINES_OF_CHANGELOG)
 
 
 def list_older_records():
