@@ -26,9 +26,9 @@ struct LatticeMap {
     double perpendicularity = 0;                     // rad, the angle between the measured axes less 90 degrees
     double amplification_error = 0;                  // standard error of the less certain amplification
     double perpendicularity_error = 0;               // rad
-    double largest_deviation = 0;  // mm, the farthest node from the affine map: the x-y mapping deviation
-    double scatter = 0;            // mm, standard deviation of a coordinate about the affine map
-    std::vector<LatticeNode> rest; // the nodes, whose off_u and off_v are what the affine map leaves
+    double largest_deviation = 0;    // mm, the farthest node from the affine map: the x-y mapping deviation
+    double scatter = 0;              // mm, standard deviation of a coordinate about the affine map
+    std::vector<LatticeNode> rest{}; // the nodes, whose off_u and off_v are what the affine map leaves
 };
 // None for fewer than four nodes, or nodes on one line.
 std::optional<LatticeMap> lattice_map(const std::vector<LatticeNode>& nodes);

@@ -30,7 +30,7 @@ Saturation SaturationCount::found() const {
     // count less than this. A file's largest integer needs less evidence: it is where values end for certain.
     constexpr std::size_t times_as_many = 4, times_as_many_at_the_end = 2;
     const Level& largest = levels_.front();
-    const std::size_t below = std::ranges::max(levels_.begin() + 1, levels_.end(), {}, &Level::values)->values;
+    const std::size_t below = std::ranges::max_element(levels_.begin() + 1, levels_.end(), {}, &Level::values)->values;
     const double share = all_ > 0 ? static_cast<double>(largest.values) / static_cast<double>(all_) : 0;
     const std::size_t times = largest.value == 1 ? times_as_many_at_the_end : times_as_many;
     // Images that have one value everywhere are not photographs, and count as unsaturated.

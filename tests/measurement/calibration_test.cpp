@@ -125,7 +125,7 @@ Findings amplification_of(const std::function<double(double depth)>& measured, d
     std::normal_distribution<double> normal(0, scatter);
     std::vector<TrialResult> results;
     for (const Trial& trial : trials_of(characteristic)) {
-        StandardDimension depth{.measured = {.name = "groove depth"}, .truth = depth_in(trial)};
+        StandardDimension depth{.measured = {.name = "groove depth", .rule = {}}, .truth = depth_in(trial)};
         depth.measured.value = measured(depth.truth) + normal(random);
         depth.measured.standard_error = scatter;
         results.push_back({.name = trial.name, .dimensions = {depth}});
@@ -193,7 +193,7 @@ TEST(Calibration, RepeatabilityAndReproducibilityArePartedAsTheyWereAdded) {
     const auto trials = trials_of(characteristic);
     for (std::size_t k = 0; k < trials.size(); ++k) {
         place_error = trials[k].name.ends_with("repeat_00") ? between * normal(random) : place_error;
-        StandardDimension depth{.measured = {.name = "groove depth"}, .truth = 0.01};
+        StandardDimension depth{.measured = {.name = "groove depth", .rule = {}}, .truth = 0.01};
         depth.measured.value = 0.01 + place_error + within * normal(random);
         results.push_back({.name = trials[k].name, .dimensions = {depth}});
     }
@@ -242,7 +242,7 @@ TEST(Calibration, TheResolutionIsThatOfAKnownTransfer) {
         if (std::regex_search(trial.name, found, std::regex("period_([0-9]+)_px"))) {
             const double x = pi * 7 / std::stod(found[1]);
             result.dimensions.push_back(
-                {.measured = {.name = "amplitude", .value = 1e-3 * std::sin(x) / x}, .truth = 1e-3});
+                {.measured = {.name = "amplitude", .rule = {}, .value = 1e-3 * std::sin(x) / x}, .truth = 1e-3});
         } else {
             result.heights = result.truth = map_of([](double, double) { return 0.0; });
         }

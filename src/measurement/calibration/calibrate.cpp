@@ -33,8 +33,8 @@ constexpr double small_paths = 64; // a pixel, backward, where the configuration
 // The instrument that is calibrated: a configuration without a specimen.
 struct Instrument {
     std::string toml;
-    Conditions conditions;
-    std::string identity_digest;
+    Conditions conditions{};
+    std::string identity_digest{};
 };
 
 // The canonical text with a square part of the detector's middle.
@@ -165,8 +165,8 @@ TrialResult result_of(const std::string& name, const Evaluation& evaluation) {
 struct Plan {
     const Characteristic* characteristic;
     const Instrument* instrument;
-    std::vector<Trial> trials;
-    std::vector<std::string> remarks;
+    std::vector<Trial> trials{};
+    std::vector<std::string> remarks{};
 };
 
 // Refuses a calibration whose files will not fit on the disk.

@@ -14,17 +14,17 @@ namespace vkfv::measurement {
 // What was found of one characteristic.
 struct CertificateEntry {
     const Characteristic* characteristic = nullptr;
-    Findings findings;
-    std::vector<std::string> trials; // folders of the stacks, relative to the certificate
+    Findings findings{};
+    std::vector<std::string> trials{}; // folders of the stacks, relative to the certificate
 };
 
 struct Certificate {
-    std::string program;              // version and commit
-    std::string title;                // name of the configuration
-    std::string identity_digest;      // digest of all that images depend on, but for the specimen
-    std::vector<std::string> devices; // that traced
+    std::string program;                // version and commit
+    std::string title;                  // name of the configuration
+    std::string identity_digest;        // digest of all that images depend on, but for the specimen
+    std::vector<std::string> devices{}; // that traced
     Conditions conditions;
-    std::vector<CertificateEntry> entries;
+    std::vector<CertificateEntry> entries{};
     std::string configuration; // TOML of the instrument as it was calibrated
 };
 

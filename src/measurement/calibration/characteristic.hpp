@@ -43,20 +43,20 @@ struct Conditions {
 
 // A stack of one standard.
 struct Trial {
-    std::string name;                    // of its folder
-    std::string specimen;                // TOML of the table [specimen] and those below it
-    std::vector<TomlOverride> overrides; // of other keys
+    std::string name;                      // of its folder
+    std::string specimen;                  // TOML of the table [specimen] and those below it
+    std::vector<TomlOverride> overrides{}; // of other keys
 };
 
 // The heights that a trial measured. Maps are on the grid of the pixels; mm.
 struct TrialResult {
     std::string name;
-    surface::HeightMap heights;
-    surface::HeightMap truth;
-    Grid<double> uncertainty;  // standard uncertainty of each height
-    double height_noise = 0;   // median of the stated noise
-    double measured_share = 0; // share of the points
-    std::vector<StandardDimension> dimensions;
+    surface::HeightMap heights{};
+    surface::HeightMap truth{};
+    Grid<double> uncertainty{}; // standard uncertainty of each height
+    double height_noise = 0;    // median of the stated noise
+    double measured_share = 0;  // share of the points
+    std::vector<StandardDimension> dimensions{};
 };
 
 // A figure with its standard uncertainty, in its unit: "um", "nm", "deg", "percent" or none.

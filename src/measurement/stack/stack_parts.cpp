@@ -100,7 +100,7 @@ GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusP
 }
 
 void GrowingEvaluation::add(int image, Grid<float> values) {
-    any_light_ = any_light_ || std::ranges::any_of(values.values, [](float value) { return value > 0; });
+    dark_images_ += std::ranges::any_of(values.values, [](float value) { return value > 0; }) ? 0u : 1u;
     const double z = scene_.positions[static_cast<std::size_t>(image)];
     evaluation_.add({std::move(values)}, z, reading_of(scene_.configuration, z, image));
 }
@@ -109,11 +109,21 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
     const Configuration& configuration = scene_.configuration;
     const auto camera = camera_figures(store);
     std::vector<Warning> warnings;
-    if (!any_light_ || (camera && !(camera->light.mean > 0))) {
+    if (dark_images_ == scene_.positions.size() || (camera && !(camera->light.mean > 0))) {
         append(warnings, warning_of_no_light(configuration, scene_.instrument,
                                              scene_.positions.size() *
                                                  trace::launched_rays(configuration.trace, configuration.instrument),
                                              " vkfv image of one position tells where it goes."));
+    } else if (dark_images_ > 0) {
+        warnings.push_back({.code = "dark-images",
+                            .key = configuration.stage ? "stage" : "trace.rays",
+                            .value = {},
+                            .works = configuration.stage ? "smaller errors of the stage" : "more rays",
+                            .sentence = fmt::format(
+                                "{} of {} images are without any light: {}.", dark_images_, scene_.positions.size(),
+                                configuration.stage ? "the stage holds the specimen far from where they look, or "
+                                                      "few rays are launched"
+                                                    : "few rays are launched, or the specimen is far from focus")});
     }
     enter_stage("heights and truth");
     std::optional<PhaseLimits> phase;

@@ -76,7 +76,7 @@ class GrowingEvaluation {
     const StackScene& scene_;
     KnownErrors errors_;
     StackEvaluation evaluation_;
-    bool any_light_ = false;
+    std::size_t dark_images_ = 0; // number of images without any light
     std::future<KnownTruth> truth_;
     std::future<StackSource> source_;
     std::optional<std::future<scan::MeanLedger>> light_way_; // of images that are traced backward
