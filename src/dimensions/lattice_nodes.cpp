@@ -57,7 +57,7 @@ Phases phases_at(const surface::HeightMap& map, const CrossGrating& grating, dou
 } // namespace
 
 std::vector<LatticeNode> lattice_nodes(const surface::HeightMap& map, const CrossGrating& grating) {
-    constexpr double square_angle = 1e-9, most_missing = 0.1;
+    constexpr double square_angle = 1e-9, most_missing = 0.01;
     if (std::abs(grating.angle - 0.5 * pi) > square_angle) {
         return {};
     }

@@ -14,9 +14,10 @@ struct LatticeNode {
     double off_u = 0, off_v = 0; // measured place less the nominal one
 };
 
-// The nodes whose neighbourhood of one period to either side lies in the map and is measured, but for a tenth. A node's
-// place is told by the phases of the two fundamental waves in that neighbourhood, under Hann windows of two periods,
-// which are zero at all harmonics and at the mean. Waves that stand at right angles only: no nodes for another angle.
+// The nodes whose neighbourhood of one period to either side lies in the map and is measured, but for a hundredth. A
+// node's place is told by the phases of the two fundamental waves in that neighbourhood, under Hann windows of two
+// periods, which are zero at all harmonics and at the mean. Waves that stand at right angles only: no nodes for another
+// angle.
 std::vector<LatticeNode> lattice_nodes(const surface::HeightMap& map, const CrossGrating& grating);
 
 // The affine part of a lattice's distortion, by least squares over the nodes. Standard errors are those of the scatter

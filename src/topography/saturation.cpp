@@ -25,17 +25,21 @@ void SaturationCount::count(float value) {
 
 Saturation SaturationCount::found() const {
     constexpr double least_share = 1e-4;
-    constexpr std::size_t least_values = 1000; // fewer values may be equal by chance
-    // Stretched grey values fill every few levels twice, and bright textures have turning points. Both raise a level's
-    // count less than this. A file's largest integer needs less evidence: it is where values end for certain.
+    constexpr std::size_t least_values = 1000, least_saturated = 10; // fewer values may be equal by chance
+    // Stretched grey values fill some levels twice, and bright textures have turning points. Both raise a level's count
+    // less than this. A file's largest integer, 1, needs less evidence: it is where values end for certain, and where
+    // contrast is low the levels further down are frequent too.
     constexpr std::size_t times_as_many = 4, times_as_many_at_the_end = 2;
     const Level& largest = levels_.front();
-    const std::size_t below = std::ranges::max_element(levels_.begin() + 1, levels_.end(), {}, &Level::values)->values;
+    const bool at_the_end = largest.value == 1;
+    const std::size_t below =
+        at_the_end ? levels_[1].values
+                   : std::ranges::max_element(levels_.begin() + 1, levels_.end(), {}, &Level::values)->values;
     const double share = all_ > 0 ? static_cast<double>(largest.values) / static_cast<double>(all_) : 0;
-    const std::size_t times = largest.value == 1 ? times_as_many_at_the_end : times_as_many;
+    const std::size_t times = at_the_end ? times_as_many_at_the_end : times_as_many;
     // Images that have one value everywhere are not photographs, and count as unsaturated.
     const bool saturated = largest.value > 0 && share >= least_share && all_ >= least_values &&
-                           largest.values > times * below && below > 0;
+                           largest.values >= least_saturated && largest.values > times * below && below > 0;
     return saturated ? Saturation{.level = largest.value, .share = share} : Saturation{};
 }
 

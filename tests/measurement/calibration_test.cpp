@@ -133,10 +133,11 @@ Findings amplification_of(const std::function<double(double depth)>& measured, d
     return characteristic.evaluate(conditions(), results);
 }
 
-// An error of five standard uncertainties is found within its expanded uncertainty, and excluded where it is not there.
+// An error of six standard uncertainties is found within its expanded uncertainty, which leaves one of the scale's true
+// values out in one case of twenty: of 200 seeds in 10, with a standard deviation of 3.1.
 TEST(Calibration, AnErrorOfTheScaleIsFound) {
     int found = 0, excluded = 0, excluded_by_chance = 0;
-    constexpr int seeds = 20;
+    constexpr int seeds = 200, most_outside = 20;
     const auto lies_outside = [](const CertificateFigure& alpha, double value) {
         return std::abs(alpha.value - value) > alpha.expanded_uncertainty();
     };
@@ -149,9 +150,10 @@ TEST(Calibration, AnErrorOfTheScaleIsFound) {
         const auto without = amplification_of([](double depth) { return depth; }, 20e-6, seed);
         excluded_by_chance += lies_outside(figure(without, "alpha_z"), 1) ? 1 : 0;
     }
-    EXPECT_GE(found, 17);
-    EXPECT_GE(excluded, 17);
-    EXPECT_LE(excluded_by_chance, 3);
+    EXPECT_GE(found, seeds - most_outside);
+    EXPECT_GE(excluded, seeds - most_outside);
+    EXPECT_LE(excluded_by_chance, most_outside);
+    EXPECT_GT(excluded_by_chance, 0); // an uncertainty that is too large never excludes the truth
 }
 
 // For grooves about the middle of the scan a cubic error a (z / h)^3 of the scale changes a depth d by 2 a (d / 2h)^3.
@@ -249,7 +251,7 @@ TEST(Calibration, TheResolutionIsThatOfAKnownTransfer) {
         results.push_back(std::move(result));
     }
     const auto findings = characteristic.evaluate(c, results);
-    EXPECT_NEAR(figure(findings, "D_LIM_um").value, 1.657 * 7, 0.3); // linear between 10 and 14 um
+    EXPECT_NEAR(figure(findings, "D_LIM_um").value, 1.657 * 7, 0.1); // between 10 and 14 um
 }
 
 } // namespace

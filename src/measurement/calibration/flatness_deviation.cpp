@@ -79,17 +79,24 @@ double flatness_of(std::span<const surface::HeightMap* const> maps, double s_fil
     return surface::height_parameters(levelled_and_filtered(mean_of(maps), s_filter)).sz;
 }
 
-// The expected range of `count` independent standard normal values: the integral of 1 - F^n - (1 - F)^n (L. H. C.
-// Tippett, Biometrika 17, 364 (1925)).
-double expected_range(double count) {
+// The expected range of a smooth normal field of unit variance over a rectangle, by the expected Euler characteristic
+// of the places above a level (R. J. Adler, "The Geometry of Random Fields", 1981; K. J. Worsley, Adv. Appl. Prob. 28,
+// 13 (1996)): it is the probability that the maximum exceeds a high level. sides: mm. deviation: mm, of the Gaussian
+// that white noise was filtered by, whose field has slopes of the variance 1 / (2 deviation^2).
+double expected_range(glm::dvec2 sides, double deviation) {
     const boost::math::normal normal;
-    constexpr double end = 8, step = 0.005;
-    double sum = 0;
-    for (double x = -end; x <= end; x += step) {
-        const double below = boost::math::cdf(normal, x);
-        sum += (1 - std::pow(below, count) - std::pow(1 - below, count)) * step;
+    const double slope = 1 / (std::sqrt(2.0) * deviation);
+    constexpr double end = 9, step = 0.002;
+    double most = 0, maximum = 0;
+    for (double level = end; level > 0; level -= step) {
+        const double gauss = std::exp(-0.5 * level * level);
+        const double places = boost::math::cdf(boost::math::complement(normal, level)) +
+                              (sides.x + sides.y) * slope * gauss / (2 * pi) +
+                              sides.x * sides.y * slope * slope * level * gauss / std::pow(2 * pi, 1.5);
+        most = std::max(most, places); // at low levels holes make the characteristic small
+        maximum += step * (1 - std::exp(-most));
     }
-    return sum;
+    return 2 * maximum;
 }
 
 // Standard deviation over the places of the filtered heights, root mean square over the points, mm.
@@ -136,11 +143,12 @@ double uncertainty_of_flatness(std::span<const TrialResult> results, double s_fi
 Findings evaluate(const Conditions& conditions, std::span<const TrialResult> results) {
     const double s_filter = conditions.s_filter();
     const double scatter = scatter_of_places(results, s_filter);
-    // The area of equal weight of the S-filter, 2 (alpha L)^2 with alpha^2 = ln 2 / pi, and of the window.
-    const double independent_area =
-        2 * std::log(2.0) / pi * s_filter * s_filter + conditions.window * conditions.window;
-    const double area = static_cast<double>(conditions.pixels.count()) * conditions.pitch * conditions.pitch;
-    const double range = expected_range(std::max(2.0, area / independent_area));
+    // The standard deviation of the S-filter's Gaussian, alpha L / sqrt(2 pi) with alpha^2 = ln 2 / pi, and that of the
+    // window.
+    const double deviation =
+        std::sqrt(std::log(2.0) / pi / (2 * pi) * s_filter * s_filter + conditions.window * conditions.window / 12);
+    const glm::dvec2 sides(conditions.pixels.columns * conditions.pitch, conditions.pixels.rows * conditions.pitch);
+    const double range = expected_range(sides, deviation);
     Findings findings;
     CertificateTable table{.caption = "Flatness deviation over the number of places",
                            .columns = {"places", "z_FLT / nm", "expected of the places' scatter alone / nm"},
@@ -187,8 +195,8 @@ Characteristic flatness_deviation() {
             .standard = "A level flat with a printed texture (type AFL), measured at places that share no texture.",
             .procedure = "The mean of the measurements is levelled by its least-squares plane and S-filtered; points "
                          "beyond 5 x 1.4826 times the median absolute deviation are taken out; z_FLT is the Sz of the "
-                         "rest. The scatter between places, of noise and texture, would alone give the range of as "
-                         "many normal values as the field has independent points. The standard uncertainty is that "
+                         "rest. The scatter between places, of noise and texture, would alone give the expected "
+                         "range of a normal field as smooth as the filter makes it. The standard uncertainty is that "
                          "of the bootstrap over the places.",
             .trials = of_flatness::trials,
             .evaluate = of_flatness::evaluate};

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace vkfv::measurement {
 
@@ -94,6 +95,20 @@ Ratio mean_of(const std::vector<double>& values) {
     return values.empty() ? Ratio{} : ratio;
 }
 
+// The period at which the transfer falls below one half, from long periods downwards; linear in the frequency between
+// neighbours, in which a transfer function is less curved than in the period. None if it stays above, or starts below.
+std::optional<double> period_of_half(const std::vector<dimensions::Transfer>& transfers) {
+    constexpr double half = 0.5;
+    for (std::size_t k = 0; k + 1 < transfers.size(); ++k) {
+        const auto &longer = transfers[k], &shorter = transfers[k + 1];
+        if (longer.ratio >= half && shorter.ratio < half) {
+            const double share = (longer.ratio - half) / (longer.ratio - shorter.ratio);
+            return 1 / (1 / longer.period * (1 - share) + 1 / shorter.period * share);
+        }
+    }
+    return std::nullopt;
+}
+
 // The uncertainty of the period at half, by the uncertainty of the ratios on either side and the slope there.
 double uncertainty_of_period(const std::vector<dimensions::Transfer>& transfers, double period) {
     for (std::size_t k = 0; k + 1 < transfers.size(); ++k) {
@@ -140,7 +155,7 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
         rings[k].standard_error /= truth[k].ratio;
     }
     const auto add = [&](const char* key, const char* title, const std::vector<dimensions::Transfer>& transfers) {
-        const auto period = dimensions::period_at_half(transfers);
+        const auto period = period_of_half(transfers);
         findings.figures.push_back({.key = key,
                                     .title = title,
                                     .unit = "um",
@@ -180,9 +195,10 @@ Characteristic lateral_resolution() {
     return {.name = "D_LIM",
             .title = "Lateral resolution",
             .standard = "Sinusoids (type PPS) of 6 to 40 pixels a period in several directions, and a star (type ASG).",
-            .procedure = "The transfer is the measured over the true amplitude, each by a least-squares fit, averaged "
-                         "over the directions; its uncertainty is their scatter. D_LIM is the period at which it falls "
-                         "to one half, linear between the periods. On the star the transfer is found in rings.",
+            .procedure =
+                "The transfer is the measured over the true amplitude, each by a least-squares fit, averaged "
+                "over the directions; its uncertainty is their scatter. D_LIM is the period at which it falls "
+                "to one half, linear in the frequency between the periods. On the star the transfer is found in rings.",
             .lateral = true,
             .trials = of_transfer::trials,
             .evaluate = of_transfer::evaluate};
