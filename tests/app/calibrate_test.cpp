@@ -31,7 +31,9 @@ TEST(Calibrate, WritesACertificateAndGoesOnWhereItEnded) {
     EXPECT_EQ(noise.at("figures").at(0).at("key"), "N_M_at_50_percent_nm");
     EXPECT_TRUE(certificate.at("characteristics").at(1).at("figures").empty());
     EXPECT_EQ(certificate.at("first_seed"), 1);
-    EXPECT_THAT(read_file(folder / "out/certificate.html"), HasSubstr("not traceable"));
+    const auto page = read_file(folder / "out/certificate.html");
+    EXPECT_THAT(page, HasSubstr("not traceable"));
+    EXPECT_THAT(page, HasSubstr("The instrument to scale"));
 
     // Repetitions without a camera are of other rays.
     const auto image = [&](const std::string& trial) { return folder / "out/N_M" / trial / "images/z_0002.tif"; };

@@ -59,6 +59,7 @@ TEST(CommandLine, ACommandIsItsOption) {
                                       {"image", "c.toml"},
                                       {"image", "c.toml", "--z", "high"},
                                       {"sweep", "c.toml"},
+                                      {"calibrate", "c.toml", "--only", "N_X"},
                                       {"topography", "out", "--set", "trace.seed=9"},
                                       {"topography", "nowhere"},
                                       {"compare", "out/topography.tif", "out/truth.tif", "--json"},

@@ -221,6 +221,7 @@ TEST(Configuration, IdentityHoldsWhatStageAndCameraDoToImages) {
         {camera, "camera.saturation", "0.7"},
         {camera, "camera.frames", "2"},
         {camera, "camera.seed", "2"},
+        {camera, "camera.noise_seed", "2"},
         {timed, "camera.exposure_ms", "2"},
         {curve, "camera.efficiency_wavelengths_um", "[0.4, 0.8]"},
         {curve, "camera.quantum_efficiencies", "[0.5, 0.7]"},

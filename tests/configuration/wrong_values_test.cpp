@@ -33,6 +33,7 @@ const std::map<std::string, std::string> least_around = {
     {"specimen.roughness", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"specimen.material", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"specimen.material.lobe", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n[specimen.material]\n"},
+    {"specimen.placement", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"specimen.reflectance", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"sweep.parameter", "[sweep]\nz_um = 0\n"},
 };

@@ -105,11 +105,15 @@ class SchemaTest(unittest.TestCase):
 
 
     def test_certificate(self):
-        """One characteristic of a tenth of a field, and its figures by key."""
+        """One characteristic that the instrument can measure and one that it cannot, by key."""
         with tempfile.TemporaryDirectory() as folder:
-            certificate = vkfv.calibrate(shared.configuration(), out=Path(folder) / "c", only=["slope"], small=True)
+            certificate = vkfv.calibrate(shared.configuration(), out=Path(folder) / "c", only=["N_M", "slope"], small=True)
             validate(certificate.content, "certificate")
-            self.assertIn("slope_limit_deg", certificate.figures)
+            noise = certificate.figures["N_M_at_50_percent_nm"]
+            self.assertGreater(noise.value, 0)
+            self.assertGreater(noise.expanded_uncertainty_95, noise.standard_uncertainty)
+            self.assertNotIn("slope_limit_deg", certificate.figures)
+            self.assertIn("scan is shorter", certificate.content["characteristics"][1]["remarks"][0])
             self.assertEqual(undocumented(Path(folder) / "c", "calibration"), [])
 
 

@@ -8,9 +8,11 @@
 #include "core/messages/warning.hpp"
 #include "core/toml/toml_tables.hpp"
 #include "measurement/calibration/certificate.hpp"
+#include "measurement/calibration/standards.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/sweep/sweep_rows.hpp"
+#include "report/layout.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,7 +20,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <sstream>
 
 namespace vkfv::measurement {
@@ -35,6 +36,7 @@ struct Instrument {
     std::string toml;
     Conditions conditions{};
     std::string identity_digest{};
+    std::string layout{}; // SVG, to scale
 };
 
 // The canonical text with a square part of the detector's middle.
@@ -114,6 +116,7 @@ Instrument instrument_of(const Configuration& base, bool small, bool lateral) {
                              .small = small,
                              .seed = configuration.trace.seed};
     instrument.identity_digest = Digest().add(without_tables(configuration.identity, {"specimen"})).sha256();
+    instrument.layout = report::layout_svg(assembled, base.file.stem().string());
     return instrument;
 }
 
@@ -138,17 +141,6 @@ std::vector<const Characteristic*> chosen(const std::vector<std::string>& only) 
     return list;
 }
 
-double median_of(const Grid<double>& values) {
-    std::vector<double> finite;
-    std::ranges::copy_if(values.values, std::back_inserter(finite), [](double v) { return std::isfinite(v); });
-    if (finite.empty()) {
-        return surface::undefined;
-    }
-    const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
-    std::ranges::nth_element(finite, middle);
-    return *middle;
-}
-
 TrialResult result_of(const std::string& name, const Evaluation& evaluation) {
     const auto& values = evaluation.topography.height.height.values;
     const auto measured = std::ranges::count_if(values, [](double height) { return std::isfinite(height); });
@@ -156,7 +148,7 @@ TrialResult result_of(const std::string& name, const Evaluation& evaluation) {
             .heights = evaluation.topography.height,
             .truth = evaluation.truth.value(),
             .uncertainty = evaluation.topography.height_uncertainty,
-            .height_noise = median_of(evaluation.topography.height_noise),
+            .height_noise = median_of(evaluation.topography.height_noise.values),
             .measured_share = static_cast<double>(measured) / static_cast<double>(values.size()),
             .dimensions = evaluation.dimensions};
 }
@@ -221,6 +213,7 @@ CalibrationResult calibrate(const CalibrationRequest& request, Progress& progres
                             .title = request.file.stem().string(),
                             .identity_digest = vertical.identity_digest,
                             .conditions = vertical.conditions,
+                            .layout = vertical.layout,
                             .configuration = vertical.toml};
     std::size_t number = 0;
     for (const Plan& plan : plans) {

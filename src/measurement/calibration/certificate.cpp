@@ -156,6 +156,7 @@ std::string certificate_page(const Certificate& certificate) {
         }
     }
     page.section("conditions", "Conditions");
+    page.picture(certificate.layout, "The instrument to scale, with rays");
     std::vector<std::vector<std::string>> table{{"", "value"}};
     for (const auto& row : rows_of(certificate.conditions)) {
         table.push_back({row.words, report::reader_number(row.value)});

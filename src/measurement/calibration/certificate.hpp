@@ -24,6 +24,7 @@ struct Certificate {
     std::string identity_digest;        // digest of all that images depend on, but for the specimen
     std::vector<std::string> devices{}; // that traced
     Conditions conditions;
+    std::string layout; // SVG of the instrument
     std::vector<CertificateEntry> entries{};
     std::string configuration; // TOML of the instrument as it was calibrated
 };

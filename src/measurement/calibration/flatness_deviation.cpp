@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -51,19 +52,10 @@ surface::HeightMap mean_of(std::span<const surface::HeightMap* const> maps) {
 // out.
 void take_out_outliers(surface::HeightMap& map) {
     constexpr double deviations = 5, normal_factor = 1.4826;
-    const auto median_of = [](std::vector<double> values) {
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::ranges::nth_element(values, middle);
-        return *middle;
-    };
-    std::vector<double> heights;
-    std::ranges::copy_if(map.height.values, std::back_inserter(heights), [](double h) { return std::isfinite(h); });
-    if (heights.empty()) {
-        return;
-    }
-    const double median = median_of(heights);
-    std::ranges::transform(heights, heights.begin(), [&](double h) { return std::abs(h - median); });
-    const double limit = deviations * normal_factor * median_of(heights);
+    const double median = median_of(map.height.values);
+    std::vector<double> distances = map.height.values;
+    std::ranges::transform(distances, distances.begin(), [&](double h) { return std::abs(h - median); });
+    const double limit = deviations * normal_factor * median_of(std::move(distances));
     for (double& height : map.height.values) {
         height = std::abs(height - median) > limit ? surface::undefined : height;
     }

@@ -59,6 +59,16 @@ double uncertainty_of(const StandardDimension& dimension) {
     return std::sqrt(square);
 }
 
+double median_of(std::vector<double> values) {
+    std::erase_if(values, [](double value) { return !std::isfinite(value); });
+    if (values.empty()) {
+        return surface::undefined;
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
 Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
     const auto count = static_cast<double>(x.size());
     Line line;

@@ -36,6 +36,9 @@ const StandardDimension* dimension(const TrialResult& result, const std::string&
 // Its standard uncertainty (mm): the scatter of the heights and the effects that move all heights alike.
 double uncertainty_of(const StandardDimension& dimension);
 
+// The median of the finite numbers; NaN if there are none.
+double median_of(std::vector<double> values);
+
 // A straight line through points by least squares. Uncertainties are those of the scatter about the line.
 struct Line {
     double offset = surface::undefined, slope = surface::undefined;
