@@ -39,7 +39,7 @@ TEST(Calibrate, WritesACertificateAndGoesOnWhereItEnded) {
     const auto image = [&](const std::string& trial) { return folder / "out/N_M" / trial / "images/z_0002.tif"; };
     EXPECT_NE(read_file(image("contrast_50/repeat_00")), read_file(image("contrast_50/repeat_01")));
 
-    // What is there is not traced again, and what is missing is; the certificate is the same.
+    // A second run traces only the stack whose folder was removed, and writes the same certificate.
     const auto kept = fs::last_write_time(image("contrast_50/repeat_01"));
     fs::remove_all(folder / "out/N_M/contrast_50/repeat_03");
     const auto bytes = read_file(folder / "out/certificate.json");

@@ -157,7 +157,7 @@ TEST(Calibration, AnErrorOfTheScaleIsFound) {
 }
 
 // For grooves about the middle of the scan a cubic error a (z / h)^3 of the scale changes a depth d by 2 a (d / 2h)^3.
-// What a line with an offset leaves of it at the seven depths is computed here once more.
+// The test computes anew, for the seven depths, how far this change departs from a least-squares line with an offset.
 TEST(Calibration, ACubicErrorOfTheScaleIsItsDeviationFromTheLine) {
     constexpr double a = 200e-6; // mm, at the ends of the usable range
     const double half = 0.5 * conditions().usable_range();

@@ -29,8 +29,8 @@ std::string remedy_text(const Warning& warning) {
 
 namespace {
 
-std::mutex guard;             // of the next
-WarningsOnce* once = nullptr; // the innermost
+std::mutex guard;             // guards `once`, since several threads warn
+WarningsOnce* once = nullptr; // the object that was made last; null: every warning is logged
 
 } // namespace
 

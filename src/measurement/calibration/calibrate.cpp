@@ -19,6 +19,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -231,6 +232,10 @@ CalibrationResult calibrate(const CalibrationRequest& request, Progress& progres
         }
         if (!trials.empty()) {
             entry.findings = plan.characteristic->evaluate(plan.instrument->conditions, trials);
+        }
+        if (plan.instrument->conditions.pixels != certificate.conditions.pixels) {
+            const ImageSize pixels = plan.instrument->conditions.pixels;
+            entry.findings.remarks.push_back(fmt::format("Measured on {} x {} pixels.", pixels.columns, pixels.rows));
         }
         entry.findings.remarks.insert(entry.findings.remarks.begin(), plan.remarks.begin(), plan.remarks.end());
         certificate.entries.push_back(std::move(entry));

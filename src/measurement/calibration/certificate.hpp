@@ -11,7 +11,7 @@
 
 namespace vkfv::measurement {
 
-// What was found of one characteristic.
+// A characteristic with its figures, and the stacks that they come from.
 struct CertificateEntry {
     const Characteristic* characteristic = nullptr;
     Findings findings{};

@@ -23,7 +23,7 @@ double pitch_of(const Conditions& conditions) {
     return windows * conditions.window;
 }
 
-// Enough for the edges to be seen, and little of the scan.
+// The depth of the grating (mm): its edges are seen, and most of the scan is left for its three places.
 double depth_of(const Conditions& conditions) {
     return std::min(conditions.curve_deviation, 0.5 * conditions.usable_range());
 }

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace vkfv::measurement {
@@ -35,7 +34,7 @@ std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>
             continue;
         }
         const std::string square = standard_of(conditions, "air", "", conditions.pitch);
-        // The kind's size is that of its tiles.
+        // The kind "air" has no key size_mm: its size is that of its one tile.
         const auto at = square.find("size_mm");
         list.push_back({.name = fmt::format("sq_{}_um", um(sq)),
                         .specimen = square.substr(0, at) + "tiles = 1\ntile_" + square.substr(at) +
