@@ -96,5 +96,18 @@ TEST_F(StageStack, KnowsTheStackOfAnotherStageOrCamera) {
     EXPECT_NE(read_file(folder_ / "out/topography.tif"), read);
 }
 
+// A drift of 1 m/s takes the focal plane 100 mm away from one image to the next, where no light comes from. The wrong
+// twin, the same stack on a still stage, has light in all images.
+TEST(StageOfAStack, ThatLeavesImagesWithoutLightIsWarnedOf) {
+    const auto folder = fresh_folder("dark_images");
+    write_file(folder / "c.toml", small_configuration);
+    const std::vector<std::string> still = {"stack", "c.toml", "--device", "host", "--rays", "2e4"};
+    auto drifting = still;
+    drifting.insert(drifting.end(), {"--set", "stage.drift_um_per_s=1e6", "--out", "drifting"});
+    EXPECT_THAT(run_program(still, folder).standard_error, testing::Not(HasSubstr("without any light")));
+    EXPECT_THAT(run_program(drifting, folder).standard_error, HasSubstr("images are without any light"));
+    EXPECT_THAT(read_file(folder / "drifting/results.json"), HasSubstr("dark-images"));
+}
+
 } // namespace
 } // namespace vkfv::test
