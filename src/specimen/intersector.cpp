@@ -254,6 +254,10 @@ Intersector::~Intersector() = default;
 Intersector::Intersector(Intersector&&) noexcept = default;
 
 Hit Intersector::hit(glm::dvec3 origin, glm::dvec3 direction) const {
+    // A stage that leaves the range of numbers sends the rays with it.
+    if (!std::isfinite(glm::dot(origin, direction))) {
+        return no_hit();
+    }
     return std::visit([&](const auto& geometry) { return geometry.hit(origin, direction); }, state_->geometry);
 }
 

@@ -195,7 +195,7 @@ void FocusProbes::follow_singles() {
         Probe& probe = probes_[static_cast<std::size_t>(k)];
         probe.singles.push_back(single_of(probe, static_cast<std::size_t>(images_ - 1)));
     };
-    constexpr std::size_t pixels_a_thread = std::size_t{1} << 15; // some milliseconds
+    constexpr std::size_t pixels_a_thread = std::size_t{1} << 12; // a third of a millisecond
     const std::size_t threads = probes_.size() * probes_.front().pixels() / pixels_a_thread;
     parallel_items(static_cast<int>(probes_.size()), follow, std::max(1, static_cast<int>(threads)));
 }

@@ -119,12 +119,16 @@ TEST(Sweep, ImagesAtSeveralHeightsAreThoseImages) {
     EXPECT_NE(images::read_image(folder / "out/z=0/image.tif").values, images::read_image(folder / "one.tif").values);
 }
 
-// A figure without a value is not drawn, and stays without one when the image is taken over from an earlier run.
+// A figure without a value is not drawn, and stays without one when the image is taken over from an earlier run. The
+// image without light is warned of, the other is not.
 TEST(Sweep, AnImageWithoutLightHasNoNoise) {
     const auto folder = fresh_folder("dark");
     write_file(folder / "c.toml", with_sweep(replaced(of_rays, "[2e4, 3.2e5]", "[1, 2e4]")));
     const std::vector<std::string> command = {"--sweep", "c.toml", "--out", "out", "--quiet", "--device", "host"};
-    ASSERT_EQ(run_program(command, folder).exit_code, 0);
+    const auto first = run_program(command, folder);
+    ASSERT_EQ(first.exit_code, 0);
+    EXPECT_THAT(first.standard_error, HasSubstr("No ray of 1 arrived"));
+    EXPECT_THAT(first.standard_error, testing::Not(HasSubstr("No ray of 20000 arrived")));
     const auto rows = table(folder / "out/sweep.csv");
     ASSERT_EQ(rows[0][3], "contrast");
     EXPECT_EQ(rows[1][2] + rows[1][3], "");

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace vkfv::specimen {
@@ -112,6 +113,23 @@ TEST(Intersector, FindsTheNearestOfAllTriangles) {
 
 // Aims rays exactly at corners, edges and diagonals, from all sides above: each must be stopped.
 template <class Aim>
+// A stage whose vibration exceeds the range of numbers sends rays from there, and a kernel's index of a cell must not
+// come from them.
+TEST(Intersector, MeetsNothingByARayThatIsNotFinite) {
+    const HeightField field = bumpy_field(24, 17);
+    const Specimen walked{field, {}}, searched{Triangles(field).mesh(), {}};
+    constexpr double nothing = std::numeric_limits<double>::quiet_NaN(), far = std::numeric_limits<double>::infinity();
+    for (const Specimen* specimen : {&walked, &searched}) {
+        const Intersector intersector(*specimen);
+        EXPECT_EQ(intersector.hit({0, 0, 0.01}, {0, 0, -1}).found, 1u);
+        for (const double value : {nothing, far, -far}) {
+            EXPECT_EQ(intersector.hit({value, 0, 0.01}, {0, 0, -1}).found, 0u);
+            EXPECT_EQ(intersector.hit({0, 0, value}, {0, 0, -1}).found, 0u);
+            EXPECT_EQ(intersector.hit({0, 0, 0.01}, {value, 0, -1}).found, 0u);
+        }
+    }
+}
+
 int slipped_through(const Intersector& intersector, const HeightField& field, Aim aim) {
     RandomRays random(3);
     int slipped = 0;

@@ -1,5 +1,6 @@
 #include "measurement/evaluation/existing_stack.hpp"
 
+#include "core/threads/read_ahead.hpp"
 #include "measurement/evaluation/brightness_warnings.hpp"
 #include "measurement/evaluation/noise_warnings.hpp"
 #include "measurement/judgement/plan_warnings.hpp"
@@ -195,21 +196,26 @@ void settle(topography::TopographyOptions& options, const LaidImages& images, co
     }
     std::optional<topography::FocusProbes> probes;
     int columns = 0, rows = 0;
-    for (const int image : order) {
-        const auto channels = images.read(image);
-        if (!probes) {
-            columns = channels.front().columns;
-            rows = channels.front().rows;
-            probes.emplace(columns, rows, options.focus_measure.value_or(topography::where_noise_is_low),
-                           topography::FocusWindow(options.window_px, options.window_shape));
-        }
-        if (channels.front().columns != columns || channels.front().rows != rows) {
-            options.focus_measure = options.focus_measure.value_or(topography::where_noise_counts);
-            return; // the evaluation refuses this image
-        }
-        probes->add(channels);
+    bool of_one_size = true;
+    read_ahead(
+        static_cast<int>(order.size()), [&](int place) { return images.read(order[static_cast<std::size_t>(place)]); },
+        [&](int, const topography::Channels& channels) {
+            if (!probes) {
+                columns = channels.front().columns;
+                rows = channels.front().rows;
+                probes.emplace(columns, rows, options.focus_measure.value_or(topography::where_noise_is_low),
+                               topography::FocusWindow(options.window_px, options.window_shape));
+            }
+            of_one_size = of_one_size && channels.front().columns == columns && channels.front().rows == rows;
+            if (of_one_size) {
+                probes->add(channels);
+            }
+        });
+    if (of_one_size) {
+        probes->settle(options);
+    } else { // the evaluation refuses the image of another size
+        options.focus_measure = options.focus_measure.value_or(topography::where_noise_counts);
     }
-    probes->settle(options);
 }
 
 } // namespace
@@ -240,11 +246,16 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
         evaluation_options(configuration, instrument),
         focus_planes_for_files(configuration.evaluate_on, configuration.trace.device, positions.size()),
         diffraction_of_evaluation(configuration, instrument), static_cast<int>(positions.size()));
-    for (std::size_t place = 0; place < positions.size(); ++place) {
-        const int image = order[place];
-        evaluation.add({scan::read_frame(stack.folder, image, positions[static_cast<std::size_t>(image)])},
-                       positions[place], reading_of(configuration, positions[place], static_cast<int>(place)));
-    }
+    read_ahead(
+        static_cast<int>(positions.size()),
+        [&](int place) {
+            const int image = order[static_cast<std::size_t>(place)];
+            return scan::read_frame(stack.folder, image, positions[static_cast<std::size_t>(image)]);
+        },
+        [&](int place, Grid<float> values) {
+            const double z = positions[static_cast<std::size_t>(place)];
+            evaluation.add({std::move(values)}, z, reading_of(configuration, z, place));
+        });
     auto source = stack_source(configuration, instrument);
     source.ledger = configuration.trace.estimator == trace::Estimator::backward
                         ? light_way(configuration, instrument, specimen, positions)
@@ -298,15 +309,15 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     KnownErrors errors;
     bool negative = false;
     topography::StackFaultsFinder finder(series.size());
-    for (int place = 0; place < series.size(); ++place) {
-        const int image = at_place(place);
-        auto channels = images.read(order[static_cast<std::size_t>(image)], finder);
-        if (place == 0) {
-            errors.flat = read_flat(configuration, {channels.front().columns, channels.front().rows}, stack.pitch);
-        }
-        negative = negative || any_negative(channels);
-        evaluation.add(std::move(channels), stack.z_start + image * stack.z_step);
-    }
+    read_ahead(
+        series.size(), [&](int place) { return images.read(order[static_cast<std::size_t>(at_place(place))], finder); },
+        [&](int place, topography::Channels channels) {
+            if (place == 0) {
+                errors.flat = read_flat(configuration, {channels.front().columns, channels.front().rows}, stack.pitch);
+            }
+            negative = negative || any_negative(channels);
+            evaluation.add(std::move(channels), stack.z_start + at_place(place) * stack.z_step);
+        });
     std::vector<Warning> warnings;
     const auto warn = [&](const char* code, const std::string& sentence) {
         warnings.push_back({.code = code, .key = {}, .value = {}, .works = {}, .sentence = sentence});

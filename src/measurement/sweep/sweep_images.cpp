@@ -7,6 +7,7 @@
 #include "images/image_file.hpp"
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"
+#include "measurement/scene/specimen_view.hpp"
 #include "scan/store.hpp"
 
 #include "trace/interface/ledger.hpp"
@@ -87,6 +88,7 @@ SweepRow image_row(const Configuration& configuration, ResultFolder& results, co
     } else {
         const Exposure exposure =
             expose(configuration, runs.devices_of(configuration), instrument, surface.specimen, focal_height);
+        log_warnings(warning_of_lost_light(configuration, instrument, exposure.image));
         const bool tells =
             configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
         row.figures = figures_of(exposure.image, tells);
