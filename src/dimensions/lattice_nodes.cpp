@@ -3,6 +3,8 @@
 #include "core/mathematics/units.hpp"
 #include "dimensions/least_squares.hpp"
 
+#include <glm/glm.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
