@@ -111,8 +111,6 @@ TEST(Intersector, FindsTheNearestOfAllTriangles) {
     EXPECT_GT(met, 800);
 }
 
-// Aims rays exactly at corners, edges and diagonals, from all sides above: each must be stopped.
-template <class Aim>
 // A stage whose vibration exceeds the range of numbers sends rays from there, and a kernel's index of a cell must not
 // come from them.
 TEST(Intersector, MeetsNothingByARayThatIsNotFinite) {
@@ -130,6 +128,8 @@ TEST(Intersector, MeetsNothingByARayThatIsNotFinite) {
     }
 }
 
+// Aims rays exactly at corners, edges and diagonals, from all sides above: each must be stopped.
+template <class Aim>
 int slipped_through(const Intersector& intersector, const HeightField& field, Aim aim) {
     RandomRays random(3);
     int slipped = 0;
