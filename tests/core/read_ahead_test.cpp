@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <latch>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
