@@ -111,8 +111,8 @@ TEST(Intersector, FindsTheNearestOfAllTriangles) {
     EXPECT_GT(met, 800);
 }
 
-// A stage whose vibration exceeds the range of numbers sends rays from there, and a kernel's index of a cell must not
-// come from them.
+// A stage whose vibration exceeds the range of numbers sends rays from there; no index of a cell may be computed from
+// them, as it would lie outside the surface.
 TEST(Intersector, MeetsNothingByARayThatIsNotFinite) {
     const HeightField field = bumpy_field(24, 17);
     const Specimen walked{field, {}}, searched{Triangles(field).mesh(), {}};
