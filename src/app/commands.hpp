@@ -16,6 +16,7 @@ Command merge_command();
 Command image_command();
 Command sweep_command();
 Command calibrate_command();
+Command budget_command();
 Command topography_command();
 Command compare_command();
 Command surface_command();
@@ -52,6 +53,9 @@ void run_sweep(const CommandOptions& options);
 // Measures the metrological characteristics of the instrument on virtual standards, and writes a certificate. Continues
 // a calibration that was interrupted.
 void run_calibrate(const CommandOptions& options);
+// Measures what the uncertain numbers of the configuration do to a result, and writes an uncertainty budget. Continues
+// one that was interrupted.
+void run_budget(const CommandOptions& options);
 // Judges the configuration, and prints warnings and figures of the instrument. Opens no device except for a forecast.
 void run_check(const CommandOptions& options);
 // Traces given rays through the imaging train, as CSV.

@@ -151,6 +151,7 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
     root.attempt("topography", [&] { read_topography(root, configuration, needs); });
     root.attempt("output", [&] { read_output(root, configuration); });
     root.attempt("sweep", [&] { read_sweep(root, configuration); });
+    root.attempt("uncertainty", [&] { read_uncertainty(root, configuration); });
     root.reject_unknown_keys();
     return configuration;
 }

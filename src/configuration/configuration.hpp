@@ -15,6 +15,7 @@
 #include "trace/interface/tracer.hpp"
 
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -50,6 +51,27 @@ struct Sweep {
     std::vector<Parameter> parameters;
 };
 
+// The uncertainties of numbers of the configuration (JCGM 100 and 101), from which vkfv budget makes an uncertainty of
+// the result.
+struct UncertainInput {
+    enum class Distribution { normal, student, rectangular, triangular, arcsine };
+    std::string key; // dotted: "stage.scale_error"
+    Distribution distribution = Distribution::normal;
+    // Standard uncertainty in the key's unit. Student's distribution is scaled by it, and is wider.
+    double uncertainty = 0;
+    double degrees_of_freedom = std::numeric_limits<double>::infinity();
+    std::string evaluation{}; // "A", by observations, or "B"
+    std::string source{};     // where it is stated; empty: nowhere
+};
+struct Uncertainty {
+    struct Correlation {
+        std::size_t first, second; // places in `inputs`
+        double coefficient;
+    };
+    std::vector<UncertainInput> inputs{};
+    std::vector<Correlation> correlations{};
+};
+
 // The transmission of the plane of the illumination's field stop.
 struct LightFieldDescription {
     specimen::Reflectance pattern;
@@ -76,6 +98,9 @@ struct Configuration : ReadKeys {
     // The distance (mm) from the back vertex of an objective with a parfocal length to its shoulder, where the distance
     // to the tube lens begins.
     double shoulder = 0;
+    // Side of a pixel on the specimen (mm), as the instrument believes it to be; none: the true one. Heights lie on a
+    // grid of this pitch, and images state it.
+    std::optional<double> assumed_pitch;
     std::optional<camera::CameraOptions> camera; // none: images are light
     std::optional<std::uint32_t> noise_seed;     // camera.noise_seed; none: trace.seed
     bool estimator_is_chosen = false;            // trace.estimator is "auto": trace.estimator below is vkfv's choice
@@ -97,7 +122,8 @@ struct Configuration : ReadKeys {
     double checkpoint_interval = usual_checkpoint_interval; // s, for longer exposures; 0: no checkpoints
     scan::PixelType pixel_type = scan::PixelType::float32;  // of the images
     std::vector<std::string> topography_files;              // names of the topography's files
-    std::optional<Sweep> sweep;                             // part of neither `canonical` nor `identity`
+    std::optional<Sweep> sweep; // this and the next: part of neither `canonical` nor `identity`
+    Uncertainty uncertainty;
 };
 
 // Reads a configuration with overrides of its keys. Throws InputError, with all problems that it finds.

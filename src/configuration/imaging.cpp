@@ -103,6 +103,11 @@ const NumberKey pixel_pitch("pixel_um", NumberRange::positive(),
                             Default::in_words("the camera's, or size_mm over its columns"),
                             "Side of a pixel, in the detector's plane, in place of size_mm.");
 
+const NumberKey assumed_pitch("assumed_pitch_um", NumberRange::positive(),
+                              Default::in_words("the true one, by the lenses"),
+                              "Side of a pixel on the specimen, as the instrument believes it to be: the pitch of the "
+                              "heights, whose lateral amplification is its ratio to the true one.");
+
 std::vector<ChoiceKey<const camera::Sensor*>::Option> camera_options() {
     std::vector<ChoiceKey<const camera::Sensor*>::Option> options;
     for (const auto& sensor : camera::sensors()) {
@@ -183,7 +188,7 @@ const KeyTable& detector_keys() {
                                 .subject = "a detector",
                                 .kind = "",
                                 .keys = with_placement({&detector_camera, &detector_format, &detector_size,
-                                                        &pixel_pitch, &detector_pixels, &fill_factor})};
+                                                        &pixel_pitch, &detector_pixels, &fill_factor, &assumed_pitch})};
     return table;
 }
 
@@ -337,6 +342,9 @@ void read_detector(const TomlTable& root, Configuration& configuration) {
         instrument.detector_width = section.number(detector_size);
     }
     instrument.fill_factor = section.number(fill_factor);
+    if (const auto pitch = section.number_if_given(assumed_pitch)) {
+        configuration.assumed_pitch = *pitch * mm_per_um;
+    }
     instrument.detector_placement = read_placement(section);
 }
 

@@ -17,6 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::string_view any_key = "KEY"; // in a table's path: any key of the configuration
+
 const char* type_text(const Key& key) {
     switch (key.type) {
     case Key::Type::number:
@@ -190,8 +192,9 @@ const std::vector<const KeyTable*>& key_tables() {
             &tube_lens_keys(),     &detector_keys(),    &mesh_element_keys(), &camera_keys()};
         const auto specimens = specimen_key_tables();
         all.insert(all.end(), specimens.begin(), specimens.end());
-        all.insert(all.end(), {&scan_keys(), &stage_keys(), &trace_keys(), &topography_keys(), &diffraction_keys(),
-                               &output_keys(), &sweep_keys(), &sweep_parameter_keys()});
+        all.insert(all.end(),
+                   {&scan_keys(), &stage_keys(), &trace_keys(), &topography_keys(), &diffraction_keys(), &output_keys(),
+                    &sweep_keys(), &sweep_parameter_keys(), &uncertainty_keys(), &uncertainty_correlation_keys()});
         return all;
     }();
     return tables;
@@ -358,16 +361,19 @@ std::string configuration_schema() {
             const auto dot = path.find('.');
             const std::string name = path.substr(0, dot);
             path = dot == std::string::npos ? "" : path.substr(dot + 1);
-            Json& below = (*object)["properties"][name];
+            // A table whose name is data stands for all tables there without a name of their own.
+            Json& below = name == any_key ? (*object)["additionalProperties"] : (*object)["properties"][name];
             const bool repeated = path.empty() && table->presence == KeyTable::Presence::repeated;
-            if (below.is_null()) {
+            if (below.is_null() || below == false) {
                 below = {{"type", repeated ? "array" : "object"}, {"description", table->meaning}};
                 if (repeated) {
                     below["items"] = {{"type", "object"}};
                 }
             }
             object = below.contains("items") ? &below["items"] : &below;
-            (*object)["additionalProperties"] = false;
+            if (!object->contains("additionalProperties")) {
+                (*object)["additionalProperties"] = false;
+            }
         }
         if (table->presence == KeyTable::Presence::needed && table->path.find('.') == std::string::npos) {
             required.push_back(table->path);

@@ -38,6 +38,7 @@ void read_diffraction(const TomlTable& root, Configuration& configuration);
 void read_topography(const TomlTable& root, Configuration& configuration, Needs needs);
 void read_output(const TomlTable& root, Configuration& configuration);
 void read_sweep(const TomlTable& root, Configuration& configuration);
+void read_uncertainty(const TomlTable& root, Configuration& configuration);
 
 const KeyTable& root_keys();
 const KeyTable& source_keys();
@@ -62,6 +63,8 @@ const KeyTable& topography_keys();
 const KeyTable& output_keys();
 const KeyTable& sweep_keys();
 const KeyTable& sweep_parameter_keys();
+const KeyTable& uncertainty_keys();
+const KeyTable& uncertainty_correlation_keys();
 
 // The tables of keys for [specimen] and for the tables in it.
 std::vector<const KeyTable*> specimen_key_tables();

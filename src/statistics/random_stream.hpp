@@ -16,7 +16,8 @@ enum class Purpose : std::uint32_t {
     photo_response = 2,
     dark_signal = 3,
     emission_order = 4, // this and the next: of the trace
-    emission_order_rest = 5
+    emission_order_rest = 5,
+    uncertain_input = 6 // of a trial of a budget
 };
 
 class RandomStream {

@@ -169,6 +169,7 @@ Case camera_fault(const std::string& name, const std::string& keys, std::vector<
 
 std::vector<Case> cases() {
     const std::vector<std::string> stack = {"--stack", "c.toml"};
+    const std::vector<std::string> budget = {"budget", "c.toml", "--measurand", "Sq"};
     const std::vector<std::string> import = {"--import", "lens.zmx"};
     const auto with_photographs = [](const std::vector<std::string>& further) {
         std::vector<std::string> arguments = {"--topography", "photographs", "--z_step_um", "1",
@@ -686,6 +687,45 @@ std::vector<Case> cases() {
          2,
          {"scan"},
          {"calibrate", "c.toml", "--only", "N_M"}},
+        // Uncertain numbers.
+        {"UncertaintyOfNothing", {}, 2, {"uncertainty", "stage.scale_error"}, budget},
+        {"UncertaintyOfNoKey",
+         {{"[output]", "[uncertainty]\n\"stage.scale_eror\" = {u = 1e-3}\n[output]"}},
+         2,
+         {"c.toml:49:", "uncertainty.stage.scale_eror", "a key of the configuration that is a number"}},
+        {"UncertaintyOfAWord",
+         {{"[output]", "[uncertainty]\n\"trace.estimator\" = {u = 1e-3}\n[output]"}},
+         2,
+         {"c.toml:49:", "uncertainty.trace.estimator", "a key of the configuration that is a number"}},
+        {"UncertaintyOfATable",
+         {{"[output]", "[uncertainty.stage]\nu = 1e-3\n[output]"}},
+         2,
+         {"c.toml:48:", "uncertainty.stage", "a key of the configuration that is a number"}},
+        {"StudentWithoutDegreesOfFreedom",
+         {{"[output]", "[uncertainty]\n\"scan.z_step_um\" = {u = 1e-3, pdf = \"t\"}\n[output]"}},
+         2,
+         {"uncertainty.scan.z_step_um.dof", "Add dof"}},
+        {"CorrelationOfACertainKey",
+         {{"[output]", "[uncertainty]\n\"scan.z_step_um\" = {u = 1e-3}\n[[uncertainty.correlation]]\n"
+                       "keys = [\"scan.z_step_um\", \"scan.z_stop_um\"]\ncoefficient = 0.5\n[output]"}},
+         2,
+         {"c.toml:51:", "uncertainty.correlation[0].keys", "two keys that have an uncertainty"}},
+        {"CorrelationOfWhatIsNotNormal",
+         {{"[output]", "[uncertainty]\n\"scan.z_step_um\" = {u = 1e-3}\n"
+                       "\"scan.z_stop_um\" = {u = 1e-3, pdf = \"arcsine\"}\n[[uncertainty.correlation]]\n"
+                       "keys = [\"scan.z_step_um\", \"scan.z_stop_um\"]\ncoefficient = 0.5\n[output]"}},
+         2,
+         {"c.toml:52:", "uncertainty.correlation[0].keys", "normal distributions"}},
+        {"UncertaintyOfAKeyWithoutValue",
+         {{"[output]", "[uncertainty]\n\"stage.scale_error\" = {u = 1e-3}\n[output]"}},
+         2,
+         {"uncertainty.stage.scale_error", "Give stage.scale_error a value"},
+         budget},
+        {"UncertaintyBeyondTheKey",
+         {{"[output]", "[uncertainty]\n\"specimen.material.g\" = {u = 0.5}\n[output]"}},
+         2,
+         {"specimen.material.g = 1.3", "inputs/specimen_material_g/above"},
+         budget},
         // The map of its reflectance.
         map_fault("MapWithoutKind", "period_um = 8\n", {"c.toml:30:", "specimen.reflectance.kind", "\"grating\""}),
         map_fault("UnknownMap", "kind = \"gratings\"\n",

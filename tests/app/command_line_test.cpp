@@ -60,6 +60,7 @@ TEST(CommandLine, ACommandIsItsOption) {
                                       {"image", "c.toml", "--z", "high"},
                                       {"sweep", "c.toml"},
                                       {"calibrate", "c.toml", "--only", "N_X"},
+                                      {"budget", "c.toml", "--measurand", "Sq"},
                                       {"topography", "out", "--set", "trace.seed=9"},
                                       {"topography", "nowhere"},
                                       {"compare", "out/topography.tif", "out/truth.tif", "--json"},
@@ -182,6 +183,9 @@ TEST(CommandLine, AnOptionOfAnotherCommandIsRefused) {
             }
             if (command.name == "image") {
                 words.insert(words.end(), {"--z", "1"});
+            }
+            if (command.name == "budget") {
+                words.insert(words.end(), {"--measurand", "Sq"});
             }
             const std::string refusal =
                 option->needed.empty()

@@ -256,19 +256,21 @@ int run_script(const fs::path& folder, const std::string& script) {
 }
 
 // `vkfv` as the documents call it: the program, with few rays, pixels and images where it traces, and without waves.
-// `optics`, `bench`, `calibrate` and configurations that are to be checked alone take long whatever is asked of them:
+// `optics`, `bench`, `calibrate`, `budget` and configurations that are to be checked alone take long whatever is asked of them:
 // `layout` reads the same configuration.
 const std::string small_vkfv = R"(#!/usr/bin/env bash
 command=${1#--}
 words=("$1")
 case $HOW:$command in
-run:optics | run:bench | run:calibrate | check:check | check:stack | check:image | check:calibrate) command=layout ;;
+run:optics | run:bench | run:calibrate | run:budget | check:check | check:stack | check:image | check:calibrate | check:budget)
+    command=layout
+    ;;
 esac
 while shift && (($#)); do
     case $command:$1 in
     *:--rays) words+=(--rays 2000) && shift ;;
     *:trace.rays=*) words+=(trace.rays=2000) ;;
-    layout:--out | layout:--only) shift ;;
+    layout:--out | layout:--only | layout:--measurand | layout:--trials | layout:--repeats) shift ;;
     layout:--small) ;;
     *) words+=("$1") ;;
     esac

@@ -36,7 +36,13 @@ const std::map<std::string, std::string> least_around = {
     {"specimen.placement", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"specimen.reflectance", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"sweep.parameter", "[sweep]\nz_um = 0\n"},
+    {"uncertainty.correlation", "[uncertainty]\n\"scan.z_start_um\" = {u = 1}\n\"scan.z_step_um\" = {u = 0.1}\n"},
 };
+
+// A key for a table that may have any key's name.
+std::string header_of(const KeyTable& table) {
+    return table.path == "uncertainty.KEY" ? "uncertainty.\"stage.scale_error\"" : table.path;
+}
 
 // The lines that must stand beside a key for it to be read at all.
 const std::map<std::string, std::string> beside_it = {
@@ -58,6 +64,10 @@ const std::map<std::string, std::string> beside_it = {
     {"specimen.material.lobe.reflectances", "scatter = \"mirror\"\nreflectance_wavelengths_um = [0.5]\n"},
     {"specimen.material.lobe.reflectance_wavelengths_um", "scatter = \"mirror\"\n"},
     {"specimen.material.lobe.reflectance_file", "scatter = \"mirror\"\n"},
+    {"uncertainty.KEY.dof", "u = 1\n"},
+    {"uncertainty.KEY.type", "u = 1\n"},
+    {"uncertainty.KEY.source", "u = 1\n"},
+    {"uncertainty.correlation.coefficient", "keys = [\"scan.z_start_um\", \"scan.z_step_um\"]\n"},
 };
 
 // The kind of a table that has no default, for keys of every kind.
@@ -86,7 +96,7 @@ Given with(const KeyTable& table, const Key& key, const std::string& value) {
             text += around->second;
         }
         const bool repeated = table.presence == KeyTable::Presence::repeated;
-        text += (repeated ? "[[" : "[") + table.path + (repeated ? "]]\n" : "]\n");
+        text += (repeated ? "[[" : "[") + header_of(table) + (repeated ? "]]\n" : "]\n");
         if (!key.kinds.empty()) {
             text += fmt::format("{} = \"{}\"\n", table.kind, key.kinds.front());
         } else if (const auto kind = kind_of.find(table.path); kind != kind_of.end() && key.name != table.kind) {

@@ -49,7 +49,7 @@ def objects(node):
 
 class SchemaTest(unittest.TestCase):
     def test_schemas_are_schemas(self):
-        for name in ("results", "sweep", "image", "certificate"):
+        for name in ("results", "sweep", "image", "certificate", "budget"):
             jsonschema.Draft202012Validator.check_schema(schema(name))
             for described in objects(schema(name)):
                 self.assertIn("additionalProperties", described)
@@ -115,6 +115,21 @@ class SchemaTest(unittest.TestCase):
             self.assertNotIn("slope_limit_deg", certificate.figures)
             self.assertIn("scan is shorter", certificate.content["characteristics"][1]["remarks"][0])
             self.assertEqual(undocumented(Path(folder) / "c", "calibration"), [])
+
+    def test_budget(self):
+        """A scale that is off by 1 % makes the surface 1 % rougher."""
+        with tempfile.TemporaryDirectory() as folder:
+            inputs = {"stage.scale_error": {"u": 0.01, "dof": 5.0}}
+            budget = vkfv.budget(shared.configuration(), "Sq", out=Path(folder) / "b", repeats=2, trials=2,
+                                 stage={"scale_error": 0.0}, uncertainty=inputs)
+            validate(budget.content, "budget")
+            self.assertEqual(undocumented(Path(folder) / "b", "budget"), [])
+            self.assertEqual(list(budget.inputs), ["stage.scale_error"])
+            self.assertEqual(budget.inputs["stage.scale_error"].degrees_of_freedom, 5)
+            self.assertAlmostEqual(budget.error, budget.measured - budget.truth, places=9)
+            self.assertGreater(budget.expanded_uncertainty_95, budget.standard_uncertainty)
+            self.assertEqual(len(budget.errors), 2)
+            self.assertIn("Sq", repr(budget))
 
 
 class FilesTest(unittest.TestCase):

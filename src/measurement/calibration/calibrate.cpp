@@ -10,7 +10,6 @@
 #include "measurement/calibration/certificate.hpp"
 #include "measurement/calibration/standards.hpp"
 #include "measurement/scene/assembly.hpp"
-#include "measurement/scene/disk_space.hpp"
 #include "measurement/sweep/sweep_rows.hpp"
 #include "report/layout.hpp"
 
@@ -162,29 +161,6 @@ struct Plan {
     std::vector<std::string> remarks{};
 };
 
-// Refuses a calibration whose files will not fit on the disk.
-void require_space_for(const std::vector<std::vector<Configuration>>& rows, const fs::path& folder) {
-    double needed = 0;
-    for (const auto& row : rows) {
-        for (const Configuration& configuration : row) {
-            if (fs::exists(configuration.output_directory / "results.json")) {
-                continue;
-            }
-            needed += static_cast<double>(image_bytes(configuration.instrument.detector_pixels)) *
-                          static_cast<double>(configuration.scan->positions().size()) +
-                      static_cast<double>(results_bytes(configuration));
-        }
-    }
-    const auto free = free_bytes(folder);
-    spdlog::info("The stacks take up to {} of the disk, which has {} free",
-                 bytes_text(static_cast<std::uint64_t>(needed)), bytes_text(free));
-    if (needed > static_cast<double>(free)) {
-        throw RunError(fmt::format("the stacks of the calibration take {}, and {} has {} free. Choose another --out, "
-                                   "fewer characteristics (--only), or --small",
-                                   bytes_text(static_cast<std::uint64_t>(needed)), folder.string(), bytes_text(free)));
-    }
-}
-
 } // namespace
 
 CalibrationResult calibrate(const CalibrationRequest& request, Progress& progress) {
@@ -204,9 +180,9 @@ CalibrationResult calibrate(const CalibrationRequest& request, Progress& progres
         }
         plans.push_back(std::move(plan));
     }
-    require_space_for(rows, results.path());
     const std::size_t stacks = rows.size();
     SweptStacks swept(std::move(rows));
+    swept.require_space(results.path());
     spdlog::info("{}", swept.plan());
     const CountedWork work(swept.images());
     const WarningsOnce warnings_once; // the report of each stack has its own

@@ -229,7 +229,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const ImageSize pixels = configuration.instrument.detector_pixels;
     std::vector<Warning> warnings =
         plan_warnings(configuration, instrument, relief_of(specimen, pixels, instrument.first_order.pixel_pitch));
-    KnownErrors errors{.flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch),
+    KnownErrors errors{.flat = read_flat(configuration, pixels, height_pitch(instrument, configuration)),
                        .design = optics::field_curvature(instrument.first_order)};
     std::vector<Warning> of_phase;
     if (configuration.trace.waves) {

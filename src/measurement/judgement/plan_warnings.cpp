@@ -4,6 +4,7 @@
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/scene/host_memory.hpp"
+#include "measurement/scene/known_truth.hpp"
 #include "measurement/scene/wave_devices.hpp"
 
 #include <fmt/format.h>
@@ -179,6 +180,22 @@ void warn_of_memory(const Plan& plan, const optics::Instrument& instrument, std:
                             bytes_text(static_cast<std::uint64_t>(there)))});
 }
 
+void warn_of_assumed_pitch(const Configuration& configuration, const optics::Instrument& instrument,
+                           std::vector<Warning>& warnings) {
+    constexpr double most_deviation = 0.05; // far above that of any calibrated instrument
+    const double true_pitch = instrument.first_order.pixel_pitch, pitch = height_pitch(instrument, configuration);
+    if (std::abs(pitch - true_pitch) > most_deviation * true_pitch) {
+        warnings.push_back({.code = "assumed-pitch",
+                            .key = "detector.assumed_pitch_um",
+                            .value = um_text(pitch),
+                            .works = um_text(true_pitch),
+                            .sentence = fmt::format("The instrument takes its pixels for {:.4g} um on the specimen, "
+                                                    "where the lenses make them {:.4g} um: all lengths in x and y come "
+                                                    "out {:.3g} times as long.",
+                                                    pitch * um_per_mm, true_pitch * um_per_mm, pitch / true_pitch)});
+    }
+}
+
 } // namespace
 
 double depth_of_focus(const optics::FirstOrder& first_order) {
@@ -198,6 +215,7 @@ std::vector<Warning> plan_warnings(const Configuration& configuration, const opt
                                    const Relief& relief) {
     std::vector<Warning> warnings;
     warn_of_host_images(configuration, warnings);
+    warn_of_assumed_pitch(configuration, instrument, warnings);
     if (!configuration.scan) {
         return warnings;
     }

@@ -117,8 +117,13 @@ class PixelTruth {
 
 } // namespace
 
+double height_pitch(const optics::Instrument& instrument, const Configuration& configuration) {
+    return configuration.assumed_pitch.value_or(instrument.first_order.pixel_pitch);
+}
+
 PixelGrid grid_of_image(const optics::Instrument& instrument, const Configuration& configuration, double focal_height) {
-    PixelGrid grid = PixelGrid::centred(configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
+    PixelGrid grid =
+        PixelGrid::centred(configuration.instrument.detector_pixels, height_pitch(instrument, configuration));
     glm::dvec2 shift(0);
     if (!optics::imaging_of(instrument).symmetric) {
         shift = optics::PixelMapping(configuration.instrument, instrument).deviation().shift;
@@ -134,10 +139,12 @@ PixelGrid grid_of_image(const optics::Instrument& instrument, const Configuratio
 KnownTruth truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                            const specimen::Specimen& specimen) {
     const optics::PixelMapping mapping(configuration.instrument, instrument);
-    PixelGrid grid = PixelGrid::centred(configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
-    const PixelTruth truth(mapping, specimen, grid);
+    const ImageSize pixels = configuration.instrument.detector_pixels;
+    const double true_pitch = instrument.first_order.pixel_pitch, pitch = height_pitch(instrument, configuration);
+    const PixelTruth truth(mapping, specimen, PixelGrid::centred(pixels, true_pitch));
     const WayAside way(configuration);
     KnownTruth known{.heights = {}, .undistorted = {}, .mapping = mapping.deviation()};
+    known.mapping.amplification *= pitch / true_pitch;
     if (way.moves()) {
         glm::dvec2 mean_aside(0);
         known.heights = truth.along(way, mean_aside);
@@ -145,10 +152,12 @@ KnownTruth truth_on_pixels(const optics::Instrument& instrument, const Configura
     } else {
         known.heights = truth.displaced([](int, int) { return glm::dvec2(0); });
     }
+    PixelGrid grid = PixelGrid::centred(pixels, pitch);
     grid.x0 += known.mapping.shift.x;
     grid.y0 += known.mapping.shift.y;
     known.heights.x0 = grid.x0;
     known.heights.y0 = grid.y0;
+    known.heights.pitch_x = known.heights.pitch_y = pitch;
     if (specimen::feature_of(*configuration.specimen)) {
         known.undistorted =
             specimen::truth(specimen, grid.columns, grid.rows, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);

@@ -12,14 +12,18 @@
 
 namespace vkfv::measurement {
 
-// The two maps stand on the regular grid of the measured heights: it has the nominal pitch, and its middle is where the
+// The side of a pixel on the specimen (mm) by which the instrument places its heights: the assumed one, or else the
+// true one.
+double height_pitch(const optics::Instrument& instrument, const Configuration& configuration);
+
+// The two maps stand on the regular grid of the measured heights: it has height_pitch(), and its middle is where the
 // middle of the detector looks, in the specimen's frame.
 struct KnownTruth {
     surface::HeightMap heights; // at the place that each pixel really sees
     // Heights at the points of the grid itself, without the mapping's distortion. The true dimensions of a standard are
     // found on this map; other specimens have none.
     std::optional<surface::HeightMap> undistorted;
-    // The distance from the grid, before its middle was moved, to the places that the pixels see. The shift includes
+    // The deviation of the places that the pixels see from the grid, before its middle was moved. The shift includes
     // the mean displacement of the specimen by its stage while the pixels are in focus.
     optics::MappingDeviation mapping;
 };

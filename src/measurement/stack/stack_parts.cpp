@@ -10,6 +10,7 @@
 #include "measurement/image/exposure.hpp"
 #include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/assembly.hpp"
+#include "measurement/scene/known_truth.hpp"
 #include "measurement/scene/light_way.hpp"
 #include "measurement/scene/specimen_view.hpp"
 #include "measurement/scene/stage_figures.hpp"
@@ -60,7 +61,7 @@ scan::StackDescription StackScene::description(const trace::TracerIdentity& trac
             .positions = positions,
             .columns = pixels().columns,
             .rows = pixels().rows,
-            .pitch = instrument.first_order.pixel_pitch,
+            .pitch = height_pitch(instrument, configuration),
             .type = configuration.pixel_type,
             .quantity = configuration.camera ? "grey values in DN" : scan::StackDescription().quantity};
 }
@@ -80,7 +81,7 @@ scan::ImageDeveloper developer_of(const StackScene& scene, const scan::ImageStor
 GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
                                      const std::vector<optics::PupilFilter>& filters)
     : scene_(scene), errors_{.flat = read_flat(scene.configuration, scene.pixels(),
-                                               scene.instrument.first_order.pixel_pitch),
+                                               height_pitch(scene.instrument, scene.configuration)),
                              .design = optics::field_curvature(scene.instrument.first_order)},
       evaluation_(evaluation_options(scene.configuration, scene.instrument), std::move(planes),
                   diffraction_of_evaluation(scene.configuration, scene.instrument),

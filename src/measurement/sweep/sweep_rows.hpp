@@ -32,6 +32,9 @@ class SweptStacks {
     // light, and 20 of the same images".
     std::string plan() const;
 
+    // Throws RunError where the files of the stacks that are not yet measured will not fit on the disk of this folder.
+    void require_space(const std::filesystem::path& folder) const;
+
     // The number of images that are traced if none is there from an earlier run.
     double images() const;
 

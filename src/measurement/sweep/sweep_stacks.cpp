@@ -2,9 +2,11 @@
 
 #include "core/mathematics/units.hpp"
 #include "core/messages/heartbeat.hpp"
+#include "measurement/scene/disk_space.hpp"
 #include "report/declared_figures.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -139,6 +141,24 @@ StackAmongOthers SweptStacks::others_of(std::size_t stack) const {
         }
     }
     return others;
+}
+
+void SweptStacks::require_space(const std::filesystem::path& folder) const {
+    double needed = 0;
+    for (const Configuration* configuration : stacks_) {
+        if (!std::filesystem::exists(configuration->output_directory / "results.json")) {
+            needed += static_cast<double>(image_bytes(configuration->instrument.detector_pixels)) *
+                          static_cast<double>(configuration->scan->positions().size()) +
+                      static_cast<double>(results_bytes(*configuration));
+        }
+    }
+    const auto free = free_bytes(folder);
+    const std::string all = bytes_text(static_cast<std::uint64_t>(needed));
+    spdlog::info("The stacks take up to {} of the disk, which has {} free", all, bytes_text(free));
+    if (needed > static_cast<double>(free)) {
+        throw RunError(fmt::format("the stacks take {}, and {} has {} free. Choose another --out, or fewer stacks", all,
+                                   folder.string(), bytes_text(free)));
+    }
 }
 
 SweepRow SweptStacks::measure_next(Progress& progress, const std::function<void(const StackResult&)>& after_stack) {

@@ -10,8 +10,9 @@ Everything is read from files; docs/python.md tells more.
 """
 
 from .array import Array
+from .budget import Budget
 from .certificate import Certificate
-from .commands import Image, calibrate, check, evaluate, image, run, sweep
+from .commands import Image, budget, calibrate, check, evaluate, image, run, sweep
 from .errors import DeviceError, Error, FolderInUse, InputError, RunError, RunWarning
 from .focus import focus_curves
 from .program import find_program
@@ -23,6 +24,7 @@ __version__ = "1.1.0"
 
 __all__ = [
     "Array",
+    "Budget",
     "Certificate",
     "DeviceError",
     "Error",
@@ -34,6 +36,7 @@ __all__ = [
     "RunWarning",
     "Stack",
     "Sweep",
+    "budget",
     "calibrate",
     "check",
     "evaluate",

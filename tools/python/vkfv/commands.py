@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from .array import Array
+from .budget import Budget
 from .certificate import Certificate
 from .overrides import settings
 from .program import Event, Outcome, call
@@ -122,6 +123,27 @@ def calibrate(
     options = (*(("--only", ",".join(only)) if only else ()), *(("--small",) if small else ()), "--json")
     outcome = _call("calibrate", config, overrides, out=out, options=options, program=program, on_event=on_event)
     return Certificate(outcome.folder)
+
+
+def budget(
+    config: PathLike,
+    measurand: str,
+    *,
+    out: PathLike | None = None,
+    trials: int = 0,
+    repeats: int = 10,
+    program: PathLike | None = None,
+    on_event: Callable[[Event], None] | None = None,
+    **overrides,
+) -> Budget:
+    """Measures what the uncertain numbers of [uncertainty] do to a result (`vkfv budget`), or continues.
+
+    measurand: a dimension of the specimen, as "groove depth", or a parameter of ISO 25178-2, as "Sq". trials: measurements in
+    which all inputs deviate at once. repeats: measurements with no input changed, at least 2.
+    """
+    options = ("--measurand", measurand, "--trials", str(trials), "--repeats", str(repeats), "--json")
+    outcome = _call("budget", config, overrides, out=out, options=options, program=program, on_event=on_event)
+    return Budget(outcome.folder)
 
 
 def evaluate(
