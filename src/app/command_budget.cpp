@@ -44,7 +44,7 @@ Command budget_command() {
                                   out_option("Output folder"),
                                   json_option()}}),
             .run = run_budget,
-            .example = "vkfv budget groove.toml --measurand \"groove depth\" --trials 200"};
+            .example = "vkfv budget assets/stacks/groove_budget.toml --measurand \"groove depth\" --trials 200"};
 }
 
 void run_budget(const CommandOptions& options) {

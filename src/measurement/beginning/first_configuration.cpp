@@ -317,8 +317,7 @@ std::string first_configuration(const DataSheets& given, const std::string& name
                         tidy_number(0.5 * resolution_um, 2), tidy_number(2 * resolution_um, 2)),
             fmt::format("a printed texture, by which focus is seen; the optics resolve {:.2g} um", resolution_um)) +
         scan_lines(scales, specimen.extent) + "\n[trace]\n" +
-        commented("estimator = \"backward\"", "from the pixels to the light: less noise") +
-        commented(fmt::format("rays = {:.0f}", rays), fmt::format("an image: {:.0f} a pixel", rays_a_pixel)) +
+        commented(fmt::format("rays = {:.0f}", rays), fmt::format("an image: {:.0f} paths a pixel", rays_a_pixel)) +
         "\n[topography]\n" +
         commented(fmt::format("window_px = {}", window),
                   fmt::format("{:.2g} um, five times what the optics resolve", window * scales.pixel * um_per_mm));
