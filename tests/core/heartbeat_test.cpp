@@ -78,6 +78,20 @@ TEST(Heartbeat, TellsShareAndTimeLeftOfCountedWork) {
               "images: 12 % done in 0:20, about 2:27 left");
 }
 
+// The speed is that of the work that is done, not of finding out what was done before.
+TEST(Heartbeat, TimeOfWorkThatWasDoneBeforeDoesNotCount) {
+    vkfv::enter_stage("images");
+    const CountedWork three_images(3);
+    std::this_thread::sleep_for(200ms);
+    vkfv::leave_out_work(1);
+    vkfv::advance_work(1);
+    Listener listener;
+    const Heartbeat heartbeat(5ms);
+    const auto state = listener.next();
+    EXPECT_DOUBLE_EQ(state.share, 0.5);
+    EXPECT_LT(state.seconds_left, 0.15);
+}
+
 TEST(Heartbeat, WorkThatHasEndedIsNoLongerTold) {
     {
         const CountedWork work(1);

@@ -127,6 +127,9 @@ void leave_out_work(double done) {
     Work& counted = work();
     const std::scoped_lock lock(counted.mutex);
     counted.total -= done;
+    if (work_done.load() == 0) { // the time until now tells nothing of the speed
+        counted.begun = Clock::now();
+    }
 }
 
 PartOfWork::PartOfWork(double share) : before_(share_of_parts.load()) {

@@ -5,19 +5,23 @@
 
 namespace vkfv {
 
-std::string without_tables(const std::string& toml, std::initializer_list<std::string_view> names) {
-    std::string text;
-    bool kept = true;
+std::string without_entries(const std::string& toml, std::initializer_list<std::string_view> names) {
+    std::string text, table;
+    const auto is_left_out = [&](const std::string& entry) {
+        return std::ranges::any_of(names, [&](std::string_view name) {
+            return entry == name || (entry.starts_with(name) && entry.substr(name.size()).starts_with('.'));
+        });
+    };
     std::istringstream lines(toml);
     for (std::string line; std::getline(lines, line);) {
+        std::string entry;
         if (line.starts_with('[')) {
             const auto first = line.find_first_not_of('[');
-            const std::string_view table = std::string_view(line).substr(first, line.find(']') - first);
-            kept = std::ranges::none_of(names, [&](std::string_view name) {
-                return table == name || (table.starts_with(name) && table.substr(name.size()).starts_with('.'));
-            });
+            entry = table = line.substr(first, line.find(']') - first);
+        } else {
+            entry = (table.empty() ? "" : table + ".") + line.substr(0, line.find(' '));
         }
-        text += kept ? line + "\n" : "";
+        text += is_left_out(entry) ? "" : line + "\n";
     }
     return text;
 }

@@ -7,7 +7,7 @@
 
 namespace vkfv {
 
-// The text without the tables of these names and the tables below them.
-std::string without_tables(const std::string& toml, std::initializer_list<std::string_view> names);
+// The text without the entries of these names: tables, with the tables below them, or dotted keys.
+std::string without_entries(const std::string& toml, std::initializer_list<std::string_view> names);
 
 } // namespace vkfv

@@ -86,8 +86,7 @@ Base base_of(const BudgetRequest& request) {
     return base;
 }
 
-// The keys that draw what nobody knows of a measurement, with their values: what another texture of the specimen, and
-// what another walk of the stage has.
+// Those of the keys that the configuration has, with their values.
 std::map<std::string, std::uint32_t> seeds_in(const Configuration& configuration,
                                               const std::vector<std::string>& keys) {
     const auto table = TomlTable::parse(configuration.canonical, configuration.file);
@@ -100,11 +99,13 @@ std::map<std::string, std::uint32_t> seeds_in(const Configuration& configuration
     return seeds;
 }
 
+// The seeds of what nobody knows of a specimen: its texture.
 std::map<std::string, std::uint32_t> texture_seeds(const Configuration& configuration) {
     return seeds_in(configuration, {"specimen.roughness.seed", "specimen.reflectance.seed"});
 }
 
-// Without a random error of the stage its seed stays, so that repetitions can be images of the same light.
+// The seeds of what differs from one measurement to the next. Without a random error of the stage its seed stays, so
+// that repetitions can be images of the same light.
 std::map<std::string, std::uint32_t> noise_seeds(const Configuration& configuration) {
     std::map<std::string, std::uint32_t> seeds{
         {configuration.camera ? "camera.noise_seed" : "trace.seed", configuration.trace.seed}};

@@ -66,22 +66,46 @@ std::string contributions_svg(const Budget& budget, const std::string& unit) {
     return svg.document({width, top + row * static_cast<double>(bars.size()) + 8}, title);
 }
 
-// The errors of the trials, and the ends of both intervals below them.
+// The histogram of the trials' errors as an outline, and both intervals above it.
 std::string histogram_svg(const Budget& budget, const std::string& unit) {
     constexpr glm::dvec2 size(560, 340), margin(16, 16);
     std::vector<double> errors = budget.errors;
     std::erase_if(errors, [](double error) { return !std::isfinite(error); });
     const auto [least, most] = std::ranges::minmax(errors);
     const auto bins = static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(errors.size())), 8.0, 40.0));
+    const double width = (most > least ? most - least : 1) / static_cast<double>(bins);
     std::vector<double> counts(bins);
     for (const double error : errors) {
-        const double place = most > least ? (error - least) / (most - least) : 0.5;
-        counts[std::min(bins - 1, static_cast<std::size_t>(place * static_cast<double>(bins)))] += 1;
+        counts[std::min(bins - 1, static_cast<std::size_t>((error - least) / width))] += 1;
     }
+    const double highest = *std::ranges::max_element(counts);
+    report::Curve outline{.name = "trials", .points = {{least, 0}}, .spreads = {}};
+    for (std::size_t bin = 0; bin < bins; ++bin) {
+        const double left = least + width * static_cast<double>(bin);
+        outline.points.insert(outline.points.end(), {{left, counts[bin]}, {left + width, counts[bin]}});
+    }
+    outline.points.emplace_back(least + width * static_cast<double>(bins), 0);
+    const double expanded = budget.by_parts.expanded_uncertainty();
+    const double low = budget.nominal.error() - expanded, high = budget.nominal.error() + expanded;
+    const auto interval = [&](const char* name, double from, double to, double place) {
+        return report::Curve{
+            .name = name, .points = {{from, place * highest}, {to, place * highest}}, .spreads = {}, .markers = true};
+    };
+    const double from = std::min(least, low), to = std::max(most, high), beside = 0.05 * (to - from);
+    const report::Axis x{
+        .from = from - beside, .to = to + beside, .label = fmt::format("error{}", unit.empty() ? "" : " / " + unit)};
     report::Svg svg;
-    const report::Axis x{.from = least, .to = most, .label = fmt::format("error{}", unit.empty() ? "" : " / " + unit)};
-    report::draw_histogram(svg, margin, size, "Errors of the trials", x, counts);
+    report::draw_chart(svg, margin, size, "Errors of the trials", x,
+                       {.from = 0, .to = 1.35 * highest, .label = "trials"},
+                       std::vector{std::move(outline),
+                                   interval("95 % of the trials", budget.by_trials.low, budget.by_trials.high, 1.1),
+                                   interval("error ± U", low, high, 1.2)});
     return svg.document(size + 2.0 * margin, "Errors of the trials");
+}
+
+// A value with the decimals of two digits of the uncertainty.
+std::string beside_uncertainty(double value, double uncertainty) {
+    return report::reader_number(value, report::form_for(value, uncertainty));
 }
 
 } // namespace of_budget_documents
@@ -113,6 +137,9 @@ std::vector<std::string> remarks_of(const Budget& budget) {
                 "uncertainty they {} (JCGM 101, clause 8).",
                 budget.interval_difference(), budget.interval_difference() <= tolerance ? "agree" : "do not agree"));
         }
+    }
+    if (std::abs(budget.nominal.error()) > budget.by_parts.expanded_uncertainty()) {
+        remarks.emplace_back("The error of the undeviated instrument is larger than U: correct results for it.");
     }
     for (const BudgetRow& row : budget.rows) {
         if (std::abs(row.contribution.value) < 2 * row.sensitivity_noise) {
@@ -184,14 +211,14 @@ std::string budget_page(const Budget& budget, const BudgetOrigin& origin, const 
     const std::string unit = report::reader_unit(budget.nominal.unit);
     const std::string of_unit = unit.empty() ? "" : " " + unit;
     report::Page page;
+    const double u = budget.by_parts.standard_uncertainty;
+    const auto shown = [&](double value) { return beside_uncertainty(value, u) + of_unit; };
     page.section("result", "Result");
-    page.paragraph(not_traceable);
-    page.paragraph(fmt::format(
-        "{}: measured {}{}, true {}{} (means of the repetitions). Combined standard uncertainty "
-        "u = {}{}, expanded uncertainty U = {}{} (95 %, k = {:.3g}).",
-        budget.nominal.name, reader_figure(budget.nominal.measured), of_unit, reader_figure(budget.nominal.truth),
-        of_unit, reader_figure(budget.by_parts.standard_uncertainty), of_unit,
-        reader_figure(budget.by_parts.expanded_uncertainty()), of_unit, budget.by_parts.coverage_factor));
+    page.paragraph(fmt::format("{}: measured {}, true {}, error {} (means of the repetitions). Combined standard "
+                               "uncertainty u = {}, expanded uncertainty U = {} (95 %, k = {:.3g}).",
+                               budget.nominal.name, shown(budget.nominal.measured), shown(budget.nominal.truth),
+                               shown(budget.nominal.error()), shown(u), shown(budget.by_parts.expanded_uncertainty()),
+                               budget.by_parts.coverage_factor));
     for (const std::string& remark : remarks_of(budget)) {
         page.paragraph(remark);
     }
@@ -220,14 +247,13 @@ std::string budget_page(const Budget& budget, const BudgetOrigin& origin, const 
     page.picture(contributions_svg(budget, unit), "The contributions, the largest first");
     if (const TrialStatistics& trials = budget.by_trials; trials.trials >= 2) {
         page.section("trials", "Trials");
-        page.paragraph(
-            fmt::format("{} trials, in each of which all inputs deviate as their distributions say (JCGM "
-                        "101). Mean error {}{}, standard deviation {}{}; 95 % of the errors lie within {} to "
-                        "{}{}. By the contributions they would lie within {} to {}{}.",
-                        trials.trials, reader_figure(trials.mean), of_unit, reader_figure(trials.standard_deviation),
-                        of_unit, reader_figure(trials.low), reader_figure(trials.high), of_unit,
-                        reader_figure(budget.nominal.error() - budget.by_parts.expanded_uncertainty()),
-                        reader_figure(budget.nominal.error() + budget.by_parts.expanded_uncertainty()), of_unit));
+        page.paragraph(fmt::format(
+            "{} trials, in each of which all inputs deviate as their distributions say (JCGM 101). Mean error "
+            "{}, standard deviation {}; 95 % of the errors lie within {} to {}. By the contributions they "
+            "would lie within {} to {}.",
+            trials.trials, shown(trials.mean), shown(trials.standard_deviation), shown(trials.low), shown(trials.high),
+            shown(budget.nominal.error() - budget.by_parts.expanded_uncertainty()),
+            shown(budget.nominal.error() + budget.by_parts.expanded_uncertainty())));
         page.picture(histogram_svg(budget, unit), "How often an error came");
     }
     page.section("conditions", "Conditions");

@@ -63,7 +63,7 @@ std::string with_pixels(const std::string& toml, int side, double pixel_um) {
 std::string small_instrument(const Configuration& base, bool lateral) {
     const ImageSize pixels = base.instrument.detector_pixels;
     const int side = std::min({lateral ? small_lateral_side : small_side, pixels.columns, pixels.rows});
-    std::string toml = without_tables(base.canonical, {"specimen"});
+    std::string toml = without_entries(base.canonical, {"specimen"});
     toml = with_pixels(toml, side, base.instrument.detector_width / pixels.columns * um_per_mm);
     const bool backward = base.trace.estimator == trace::Estimator::backward;
     const double paths =
@@ -83,7 +83,7 @@ std::string small_instrument(const Configuration& base, bool lateral) {
     // Read once more, so that the text has the overrides' values.
     const auto read = read_configuration(
         TomlTable::parse(toml + "[specimen]\nkind = \"plane\"\nsize_mm = 1.0\n", base.file, overrides));
-    return without_tables(read.canonical, {"specimen"});
+    return without_entries(read.canonical, {"specimen"});
 }
 
 Configuration with_specimen(const Instrument& instrument, const fs::path& file, const Trial& trial,
@@ -95,7 +95,7 @@ Configuration with_specimen(const Instrument& instrument, const fs::path& file, 
 
 Instrument instrument_of(const Configuration& base, bool small, bool lateral) {
     Instrument instrument{.toml =
-                              small ? small_instrument(base, lateral) : without_tables(base.canonical, {"specimen"})};
+                              small ? small_instrument(base, lateral) : without_entries(base.canonical, {"specimen"})};
     const Configuration configuration = read_configuration(
         TomlTable::parse(instrument.toml + "[specimen]\nkind = \"plane\"\nsize_mm = 1.0\n", base.file));
     const auto assembled = assemble_for_figures(configuration);
@@ -115,7 +115,7 @@ Instrument instrument_of(const Configuration& base, bool small, bool lateral) {
                              .camera = configuration.camera.has_value(),
                              .small = small,
                              .seed = configuration.trace.seed};
-    instrument.identity_digest = Digest().add(without_tables(configuration.identity, {"specimen"})).sha256();
+    instrument.identity_digest = Digest().add(without_entries(configuration.identity, {"specimen"})).sha256();
     instrument.layout = report::layout_svg(assembled, base.file.stem().string());
     return instrument;
 }

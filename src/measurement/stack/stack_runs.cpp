@@ -93,7 +93,8 @@ std::string image_key(const Configuration& configuration) {
 }
 
 std::string light_key(const Configuration& configuration) {
-    return without_tables(configuration.identity, {"camera", "output"}) + requests_of(configuration);
+    return without_entries(configuration.identity, {"camera", "output", "detector.assumed_pitch_um"}) +
+           requests_of(configuration);
 }
 
 WorkingDevices& StackRuns::devices_of(const Configuration& configuration) {
