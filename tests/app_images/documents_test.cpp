@@ -256,8 +256,8 @@ int run_script(const fs::path& folder, const std::string& script) {
 }
 
 // `vkfv` as the documents call it: the program, with few rays, pixels and images where it traces, and without waves.
-// `optics`, `bench`, `calibrate`, `budget` and configurations that are to be checked alone take long whatever is asked of them:
-// `layout` reads the same configuration.
+// `optics`, `bench`, `calibrate`, `budget` and configurations that are to be checked alone take long whatever is asked
+// of them: `layout` reads the same configuration.
 const std::string small_vkfv = R"(#!/usr/bin/env bash
 command=${1#--}
 words=("$1")

@@ -93,6 +93,14 @@ TEST(Budget, EffectiveDegreesOfFreedomAreThoseOfTheEndGauge) {
     EXPECT_NEAR(std::floor(found.degrees_of_freedom), 16, 1);
 }
 
+// JCGM 101, 7.9.2.
+TEST(Budget, TolerancesAreHalfOfTheLastDigit) {
+    EXPECT_DOUBLE_EQ(numerical_tolerance(0.00035, 2), 0.000005);
+    EXPECT_DOUBLE_EQ(numerical_tolerance(0.2, 1), 0.05);
+    EXPECT_DOUBLE_EQ(numerical_tolerance(35, 2), 0.5);
+    EXPECT_DOUBLE_EQ(numerical_tolerance(0.0996, 2), 0.005); // 0.10
+}
+
 TEST(Budget, EveryDistributionHasItsStandardUncertaintyAndEnds) {
     struct Case {
         Distribution distribution;

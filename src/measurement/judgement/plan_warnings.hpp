@@ -10,10 +10,11 @@
 
 namespace vkfv::measurement {
 
-// The warnings of a stack's scan and evaluation: an assumed pitch far from the true one; a scan inside the depth of field, a scan with coarse steps, a scan
-// that does not hold the specimen or its curved image; a window as wide as the image; an average along z at its end;
-// images or an evaluation that exceed this machine's memory. The instrument is the configuration's, `relief` the part
-// of the specimen that its detector sees. Without [scan] there are only warnings of the pitch and of memory.
+// The warnings of a stack's scan and evaluation: an assumed pitch far from the true one; a scan inside the depth of
+// field, a scan with coarse steps, a scan that does not hold the specimen or its curved image; a window as wide as the
+// image; an average along z at its end; images or an evaluation that exceed this machine's memory. The instrument is
+// the configuration's, `relief` the part of the specimen that its detector sees. Without [scan] there are only warnings
+// of the pitch and of memory.
 std::vector<Warning> plan_warnings(const Configuration& configuration, const optics::Instrument& instrument,
                                    const Relief& relief);
 
