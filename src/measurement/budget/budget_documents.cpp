@@ -91,7 +91,7 @@ std::string histogram_svg(const Budget& budget, const std::string& unit) {
         return report::Curve{
             .name = name, .points = {{from, place * highest}, {to, place * highest}}, .spreads = {}, .markers = true};
     };
-    const double from = std::min(least, low), to = std::max(most, high), beside = 0.05 * (to - from);
+    const double from = std::min(least, low), to = std::max(most, high), beside = to > from ? 0.05 * (to - from) : 1;
     const report::Axis x{
         .from = from - beside, .to = to + beside, .label = fmt::format("error{}", unit.empty() ? "" : " / " + unit)};
     report::Svg svg;
