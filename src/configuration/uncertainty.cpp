@@ -70,7 +70,7 @@ bool is_table(const std::string& key) {
 // Reads the tables below `table`, whose names may be whole dotted keys or the parts of one.
 void read_inputs(const TomlTable& table, const std::string& before, Configuration& configuration) {
     for (const std::string& name : table.keys()) {
-        const std::string key = before.empty() ? name : before + "." + name;
+        const std::string key = before.empty() ? name : fmt::format("{}.{}", before, name);
         if (key == "correlation") {
             continue;
         }

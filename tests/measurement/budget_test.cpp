@@ -25,6 +25,7 @@ template <class Model>
 TrialStatistics of_trials(const Uncertainty& uncertainty, int trials, const Model& model) {
     const InputDraws draws(uncertainty, 7);
     std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(trials));
     for (int k = 0; k < trials; ++k) {
         values.push_back(model(draws.deviations(static_cast<std::uint32_t>(k))));
     }

@@ -172,6 +172,7 @@ std::vector<Run> planned(const BudgetRequest& request, const Configuration& base
     std::vector<Run> runs;
     const Counts counts(request, base);
     const int repeats = request.repeats;
+    runs.reserve(counts.repeats + counts.textures + 2 * counts.inputs + counts.trials);
     for (int k = 0; k < repeats; ++k) {
         runs.push_back({fmt::format("repeats/{:03}", k), none, k, 0});
     }
@@ -283,6 +284,7 @@ BudgetResult budget(const BudgetRequest& request, Progress& progress) {
     const of_budget::Runs runs(request, with_pitch, results.path());
     const auto plan = of_budget::planned(request, base);
     std::vector<std::vector<Configuration>> rows;
+    rows.reserve(plan.size());
     for (const auto& run : plan) { // every configuration is checked before the first is traced
         rows.push_back({runs.of(run)});
     }
