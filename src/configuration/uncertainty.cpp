@@ -51,7 +51,7 @@ UncertainInput input_of(const std::string& key, const TomlTable& table, ReadKeys
     return input;
 }
 
-// The keys of the whole configuration that are numbers.
+// Whether the configuration has a key of this dotted name that is a number.
 bool is_number(const std::string& key) {
     const auto& tables = key_tables();
     return std::ranges::any_of(tables, [&](const KeyTable* table) {

@@ -7,8 +7,9 @@
 
 namespace vkfv::statistics {
 
-// The lower triangle L with L L^T = correlation, both row by row (Cholesky): L times independent deviates of standard
-// deviation 1 are deviates with these correlations. None if the matrix is not positive definite.
+// A matrix R with R R^T = correlation, both row by row (Cholesky, with pivots): R times independent deviates of
+// standard deviation 1 are deviates with these correlations. Coefficients of 1 and -1 are correlations too. None if the
+// matrix has a negative eigenvalue, beyond rounding.
 std::optional<std::vector<double>> correlation_root(const std::vector<double>& correlation, std::size_t count);
 
 } // namespace vkfv::statistics

@@ -60,6 +60,7 @@ TEST(UncertaintyBudget, HasContributionsInClosedForm) {
     const double measured = width.at("measured");
     EXPECT_NEAR(measured, 14, 1);
     EXPECT_NEAR(contribution(width, "detector.assumed_pitch_um"), measured * 0.005 / 0.345, 0.01);
+    // Larger images see the print by other pixels, so the tolerance is that of another texture.
     EXPECT_NEAR(contribution(width, "tube_lens.focal_length_mm"), measured * 6 / 200, 0.1);
     EXPECT_EQ(row(width, "tube_lens.focal_length_mm").at("distribution"), "rectangular");
     EXPECT_EQ(width.at("by_trials"), nullptr);

@@ -130,6 +130,12 @@ TEST(Budget, CorrelatedInputsDeviateTogether) {
     EXPECT_NEAR(of_trials(two, 50000, difference).standard_deviation, std::sqrt(0.4), 0.01);
     const std::vector<Contribution> parts(2, {.value = 1, .degrees_of_freedom = 1e9});
     EXPECT_NEAR(combined(parts, two.correlations).standard_uncertainty, std::sqrt(3.6), 1e-9);
+    // As JCGM 100, 5.2.2 has it, inputs may be one and the same.
+    for (const double sign : {1.0, -1.0}) {
+        two.correlations = {{.first = 0, .second = 1, .coefficient = sign}};
+        EXPECT_NEAR(of_trials(two, 5000, sum).standard_deviation, sign > 0 ? 2 : 0, 0.1);
+        EXPECT_NEAR(of_trials(two, 5000, difference).standard_deviation, sign > 0 ? 0 : 2, 0.1);
+    }
     // Three that contradict each other have no distribution.
     two.inputs.push_back(two.inputs.front());
     two.correlations = {{0, 1, 0.9}, {1, 2, 0.9}, {0, 2, -0.9}};

@@ -25,7 +25,7 @@ InputDraws::InputDraws(const Uncertainty& uncertainty, std::uint32_t seed) : unc
             {.where = {},
              .key = "uncertainty.correlation",
              .found = "coefficients that contradict each other",
-             .expected = "a positive definite matrix of correlations",
+             .expected = "correlations that all keys can have at once",
              .remedy = "Lower a coefficient: what two keys share with a third they share with each other."});
     }
     root_ = std::move(*root);
@@ -49,7 +49,7 @@ std::vector<double> InputDraws::deviations(std::uint32_t trial) const {
         double standard = 0; // of a distribution whose standard uncertainty is 1
         switch (input.distribution) {
         case Distribution::normal:
-            for (std::size_t other = 0; other <= k; ++other) {
+            for (std::size_t other = 0; other < count; ++other) {
                 standard += root_[k * count + other] * normals[other];
             }
             break;

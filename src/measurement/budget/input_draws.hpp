@@ -21,7 +21,7 @@ class InputDraws {
   private:
     Uncertainty uncertainty_;
     std::uint32_t seed_;
-    std::vector<double> root_; // lower triangle whose product with its transpose is the correlation; row by row
+    std::vector<double> root_; // matrix whose product with its transpose is the correlation; row by row
 };
 
 } // namespace vkfv::measurement
