@@ -26,6 +26,7 @@
 #include "physics/surface_function.glsl"
 #include "physics/pupil_cells.glsl"
 #include "physics/reflectance.glsl"
+#include "physics/image_distortion.glsl"
 #include "physics/path.glsl"
 #if defined(__cplusplus) || defined(VKFV_NONSEQUENTIAL) || defined(VKFV_BVH)
 #include "physics/ray_frame.glsl"

@@ -256,6 +256,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
     detection.row = 0;
     detection.x = real(0.0);
     detection.y = real(0.0);
+    detection.recorded = real2(real(0.0), real(0.0));
     real3 to_specimen = real3(real(0.0), real(0.0), exposure.focal_height) - displacement(exposure);
     PathPlace place;
     place.element = -1;
@@ -304,7 +305,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
             ElementMeeting meeting =
                 meet_element(element, origin, direction, met.index == place.element, least_distance(origin));
             if (element.kind == ELEMENT_DETECTOR && meeting.clear && meeting.side > real(0.0)) {
-                detection = detect(instrument, meeting.point.x, meeting.point.y);
+                detection = detect(instrument, exposure, meeting.point.x, meeting.point.y);
             } else {
                 Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(k));
                 Passage passage = pass_element(element, met.index, meeting, emission.light, turn.u0);

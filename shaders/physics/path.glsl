@@ -412,7 +412,8 @@ struct Detection {
     int row;
     real x; // mm, on the detector's plane, axes parallel to the specimen's, inversion not removed
     real y;
-    real2 slope; // slopes dx/dz and dy/dz at this place
+    real2 slope;    // slopes dx/dz and dy/dz at this place
+    real2 recorded; // mm, the place that the pixels stand for (image_distortion.glsl)
 };
 
 VKFV_FUNCTION real3 survivor_direction(Survivor survivor) {
@@ -432,20 +433,22 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION bool survivor_occluded(VKFV_SCENE_PARAMETER Ex
 
 // The pixel on which light lands. x, y: mm, on the detector's plane, axes parallel to the specimen's, inversion not
 // removed.
-VKFV_FUNCTION Detection detect(Instrument instrument, real x, real y) {
+VKFV_FUNCTION Detection detect(Instrument instrument, Exposure exposure, real x, real y) {
     real half_width = instrument.detector_half_width;
     real half_height = instrument.detector_half_height;
     // The inversion is removed: a negative magnification turns the image by half a turn.
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
     real scale = real(instrument.detector_columns) / (real(2.0) * half_width);
-    bool on_detector = abs(x) < half_width && abs(y) < half_height;
+    real2 recorded = recorded_place(instrument, exposure, real2(x, y));
+    bool on_detector = abs(recorded.x) < half_width && abs(recorded.y) < half_height;
     bool finite = !(isnan(x) || isinf(x) || isnan(y) || isinf(y));
     Detection detection;
     detection.x = x;
     detection.y = y;
     detection.slope = real2(real(0.0), real(0.0));
-    real column = (turn * x + half_width) * scale;
-    real row = (turn * y + half_height) * scale;
+    detection.recorded = recorded;
+    real column = (turn * recorded.x + half_width) * scale;
+    real row = (turn * recorded.y + half_height) * scale;
     detection.column = on_detector ? clamp(int(floor(column)), 0, instrument.detector_columns - 1) : 0;
     detection.row = on_detector ? clamp(int(floor(row)), 0, instrument.detector_rows - 1) : 0;
     // Light between the sensitive parts of the pixels is off the detector too.
@@ -473,7 +476,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
     TrainResult train = trace_short_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index,
                                           light, SHORT_TRAIN_FINE);
     Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, train.index);
-    Detection detection = detect(instrument, arrived.position.x, arrived.position.y);
+    Detection detection = detect(instrument, exposure, arrived.position.x, arrived.position.y);
     detection.slope = real2(arrived.direction.x, arrived.direction.y) / arrived.direction.z;
     bool twin = (survivor.mark & SURVIVOR_TWIN) != 0u;
     detection.fate = occluded                     ? make_fate(twin ? PATH_ALIVE : PATH_BOUNCE_LIMIT, -1)
@@ -486,8 +489,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
 VKFV_FUNCTION CellPlace detection_place(Instrument instrument, PupilCells cells, Detection detection) {
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
     real scale = real(instrument.detector_columns) / (real(2.0) * instrument.detector_half_width);
-    real column = (turn * detection.x + instrument.detector_half_width) * scale - real(detection.column);
-    real row = (turn * detection.y + instrument.detector_half_height) * scale - real(detection.row);
+    real column = (turn * detection.recorded.x + instrument.detector_half_width) * scale - real(detection.column);
+    real row = (turn * detection.recorded.y + instrument.detector_half_height) * scale - real(detection.row);
     CellPlace place;
     place.column = detection.column * int(cells.parts) + pixel_part(cells, column);
     place.row = detection.row * int(cells.parts) + pixel_part(cells, row);

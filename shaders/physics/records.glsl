@@ -262,6 +262,8 @@ struct LightField {
     FIELD(real, detector_distance)   /* mm, from the last vertex of the imaging train to the detector */ \
     FIELD(real, detector_half_width)  /* mm, along x */ \
     FIELD(real, detector_half_height) /* mm, along y */ \
+    FIELD(real, image_distortion)    /* 1/mm^2, see image_distortion.glsl */ \
+    FIELD(real, image_shear)         /* a ratio of lengths */ \
     FIELD(real, gate_position) \
     FIELD(real, gate_slope) \
     FIELD(real, gate_radius) \
@@ -355,7 +357,8 @@ struct SpecimenRecord {
     FIELD(real, focal_height)          /* mm, of the focal plane in the specimen frame: z of the image */ \
     FIELD(real, top_distance_residual) /* mm, what rounding took from top_distance; 0 in double */ \
     FIELD(real, beside_x)              /* mm, displacement of the specimen from its place on the axis */ \
-    FIELD(real, beside_y)
+    FIELD(real, beside_y) \
+    FIELD(real, magnification_change)  /* share by which it exceeds that of a focal height of 0 */
 struct Exposure {
     VKFV_EXPOSURE_FIELDS(VKFV_DECLARE)
 };

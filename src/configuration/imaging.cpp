@@ -73,6 +73,11 @@ const NumberKey numerical_aperture = of_kinds(
     {"ideal", "telecentric"}, for_example("0.3", NumberKey("numerical_aperture", NumberRange::positive(), needed,
                                                            "Of the cone from the specimen, below the index "
                                                            "there.")));
+const NumberKey
+    magnification_rate("magnification_per_um", NumberRange::within(-0.01, 0.01), Default::in_words("0"),
+                       "Share by which the magnification grows when the focal plane rises by 1 um; at z = 0 it is that "
+                       "of the lenses. A lens "
+                       "that is not telecentric does so on its own: this is to see what a further change does.");
 const TextKey immersion("immersion", Default::in_words("the prescription's, else air"),
                         "Medium between specimen and objective.");
 const NumberKey aperture_stop =
@@ -107,6 +112,16 @@ const NumberKey assumed_pitch("assumed_pitch_um", NumberRange::positive(),
                               Default::in_words("the true one, by the lenses"),
                               "Side of a pixel on the specimen, as the instrument believes it to be: the pitch of the "
                               "heights, whose lateral amplification is its ratio to the true one.");
+
+const NumberKey
+    distortion("distortion", NumberRange::within(-10, 10), Default::in_words("that of the lenses alone"),
+               "Radial distortion in percent at distortion_field_mm, on top of that of the lenses: positive "
+               "moves the image outwards (pincushion), as the third power of the distance from the axis.");
+const NumberKey distortion_field("distortion_field_mm", NumberRange::positive(),
+                                 Default::in_words("needed with distortion"),
+                                 "Distance from the axis, on the specimen, at which distortion is stated.");
+const NumberKey shear("shear_deg", NumberRange::within(-10, 10), Default::in_words("0"),
+                      "Degrees by which the angle from the detector's rows to its columns exceeds a right one.");
 
 std::vector<ChoiceKey<const camera::Sensor*>::Option> camera_options() {
     std::vector<ChoiceKey<const camera::Sensor*>::Option> options;
@@ -152,10 +167,10 @@ const KeyTable& objective_keys() {
         .meaning = "The objective.",
         .subject = "an objective",
         .kind = "kind",
-        .keys =
-            with_placement({&objective_kind, &immersion, &objective_prescription, &aperture_stop,
-                            &objective_focal_length, &magnification, &telecentric_magnification, &tube_length,
-                            &numerical_aperture, &working_distance, &telecentric_working_distance, &parfocal_length})};
+        .keys = with_placement({&objective_kind, &immersion, &objective_prescription, &aperture_stop,
+                                &objective_focal_length, &magnification, &telecentric_magnification, &tube_length,
+                                &numerical_aperture, &working_distance, &telecentric_working_distance, &parfocal_length,
+                                &magnification_rate})};
     return table;
 }
 
@@ -182,13 +197,14 @@ const KeyTable& tube_lens_keys() {
 }
 
 const KeyTable& detector_keys() {
-    static const KeyTable table{.path = "detector",
-                                .presence = KeyTable::Presence::needed,
-                                .meaning = "The camera's chip, in the plane where the specimen's best focus is imaged.",
-                                .subject = "a detector",
-                                .kind = "",
-                                .keys = with_placement({&detector_camera, &detector_format, &detector_size,
-                                                        &pixel_pitch, &detector_pixels, &fill_factor, &assumed_pitch})};
+    static const KeyTable table{
+        .path = "detector",
+        .presence = KeyTable::Presence::needed,
+        .meaning = "The camera's chip, in the plane where the specimen's best focus is imaged.",
+        .subject = "a detector",
+        .kind = "",
+        .keys = with_placement({&detector_camera, &detector_format, &detector_size, &pixel_pitch, &detector_pixels,
+                                &fill_factor, &assumed_pitch, &distortion, &distortion_field, &shear})};
     return table;
 }
 
@@ -256,6 +272,7 @@ void read_objective(const TomlTable& root, Configuration& configuration) {
         instrument.aperture_stop_radius = section.number_if_given(aperture_stop);
         break;
     }
+    instrument.image.magnification_rate = section.number_if_given(magnification_rate).value_or(0) / mm_per_um;
     instrument.objective_placement = read_placement(section);
 }
 
@@ -345,6 +362,15 @@ void read_detector(const TomlTable& root, Configuration& configuration) {
     if (const auto pitch = section.number_if_given(assumed_pitch)) {
         configuration.assumed_pitch = *pitch * mm_per_um;
     }
+    const auto percent = section.number_if_given(distortion), field = section.number_if_given(distortion_field);
+    if (percent.has_value() != field.has_value()) {
+        section.fail(percent ? distortion : distortion_field, "both distortion and distortion_field_mm, or neither",
+                     fmt::format("Add {} to [detector].", percent ? distortion_field.name : distortion.name));
+    } else if (percent) {
+        instrument.image.distortion = 0.01 * *percent;
+        instrument.image.field_height = *field;
+    }
+    instrument.image.shear = section.number_if_given(shear).value_or(0) * radians_per_degree;
     instrument.detector_placement = read_placement(section);
 }
 

@@ -64,6 +64,8 @@ const std::map<std::string, std::string> beside_it = {
     {"specimen.material.lobe.reflectances", "scatter = \"mirror\"\nreflectance_wavelengths_um = [0.5]\n"},
     {"specimen.material.lobe.reflectance_wavelengths_um", "scatter = \"mirror\"\n"},
     {"specimen.material.lobe.reflectance_file", "scatter = \"mirror\"\n"},
+    {"detector.distortion", "distortion_field_mm = 1.0\n"},
+    {"detector.distortion_field_mm", "distortion = 0.0\n"},
     {"uncertainty.KEY.dof", "u = 1\n"},
     {"uncertainty.KEY.type", "u = 1\n"},
     {"uncertainty.KEY.source", "u = 1\n"},

@@ -1,13 +1,17 @@
 // The truth stands where the instrument believes its pixels to look.
 #include "configuration/configuration.hpp"
+#include "core/mathematics/units.hpp"
 #include "measurement/judgement/plan_warnings.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/known_truth.hpp"
 #include "measurement/surface/standard.hpp"
 #include "specimen/kinds.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -70,6 +74,33 @@ TEST(KnownTruth, AnAssumedPitchFarFromTheTrueOneIsWarnedOf) {
     ASSERT_EQ(wrong.warnings.size(), 1u);
     EXPECT_EQ(wrong.warnings.front().code, "assumed-pitch");
     EXPECT_EQ(wrong.warnings.front().works, "0.345");
+}
+
+// Where the magnification follows the focal plane, a pixel looks nearer to the axis the higher the point is that it
+// sees in focus: the height solves z = A sin(2 pi x / P) at x = nominal / (1 + rate (z - focus)).
+TEST(KnownTruth, AMagnificationThatFollowsTheFocalPlaneMovesHighPointsInwards) {
+    constexpr double rate = 0.005, amplitude = 3, period = 64; // 1/um; um as in the example
+    const auto configuration =
+        load_configuration(std::filesystem::path(VKFV_SOURCE_DIR) / "assets/stacks/sinusoid.toml",
+                           {{"objective.magnification_per_um", fmt::format("{}", rate), "test"},
+                            {"specimen.roughness.noise_um", "0.001", "test"}});
+    const auto specimen = make_specimen(configuration);
+    const auto instrument = assemble_for_figures(configuration);
+    const auto truth = truth_on_pixels(instrument, configuration, specimen);
+    const optics::PixelMapping mapping(configuration.instrument, instrument);
+    const auto nominal =
+        PixelGrid::centred(configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
+    double most_aside = 0;
+    for (int column = 0; column < nominal.columns; column += 5) {
+        const int row = nominal.rows / 3;
+        const glm::dvec2 at(nominal.x0 + column * nominal.pitch_x, nominal.y0 + row * nominal.pitch_y);
+        const double height = 1e3 * truth.heights.height(column, row);
+        const double scale = 1 + rate * (height - 1e3 * mapping.focus(at));
+        EXPECT_NEAR(height, amplitude * std::sin(2 * pi * 1e3 * mapping.place(at, scale).x / period), 0.01);
+        const double unmoved = amplitude * std::sin(2 * pi * 1e3 * mapping.place(at).x / period);
+        most_aside = std::max(most_aside, std::abs(height - unmoved));
+    }
+    EXPECT_GT(most_aside, 0.1); // wrong twin: the magnification at z = 0
 }
 
 } // namespace

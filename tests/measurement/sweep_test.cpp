@@ -1,17 +1,22 @@
 // The values that sweeps of stacks tell are what the files of their stacks hold.
 #include "core/files/file.hpp"
 #include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "measurement/sweep/sweep.hpp"
+#include "measurement/sweep/sweep_rows.hpp"
 #include "scan/store.hpp"
 #include "surface_files/surface_file.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <unistd.h>
 
@@ -151,6 +156,57 @@ TEST_F(SweepOfStacks, TheSameLightIsTracedOnce) {
     sweep();
     EXPECT_EQ(traced, (std::vector<int>{0, 0, 1, 0}));
     EXPECT_EQ(read_file(folder_of("0.6", "7") / lost), bytes);
+}
+
+// Stacks that are measured at once have the files of stacks measured one after the other. The first and the last share
+// their light, and so are never measured at once.
+TEST_F(SweepOfStacks, FilesDoNotDependOnTheNumberOfLanes) {
+    const auto swept = [&](const std::string& out) {
+        std::vector<std::vector<Configuration>> rows;
+        for (const auto& [seed, pitch] : {std::pair{"1", "1.0"}, std::pair{"2", "1.0"}, std::pair{"1", "1.01"}}) {
+            auto own = overrides("[\"tiff\"]", fs::path(out) / std::to_string(rows.size()));
+            own.push_back({"trace.seed", seed, ""});
+            own.push_back({"detector.assumed_pitch_um", pitch, ""});
+            own.push_back({"trace.estimator", "\"backward\"", ""});
+            rows.push_back({load_stack(folder_ / "c.toml", own)});
+        }
+        return rows;
+    };
+    Progress progress(std::cerr, Progress::Style::quiet);
+    for (const int lanes : {1, 2}) {
+        std::vector<std::size_t> begun;
+        std::atomic<int> at_once = 0;
+        const auto alone = [&](const auto& told) {
+            EXPECT_EQ(at_once++, 0); // calls never overlap
+            told();
+            --at_once;
+        };
+        std::size_t after_stacks = 0, after_rows = 0;
+        SweptStacks(swept(std::to_string(lanes)))
+            .measure(progress, lanes,
+                     {.begins = [&](std::size_t row) { alone([&] { begun.push_back(row); }); },
+                      .after_stack = [&](std::size_t, const StackResult&) { alone([&] { ++after_stacks; }); },
+                      .after_row = [&](std::size_t, SweepRow&&) { alone([&] { ++after_rows; }); }});
+        EXPECT_EQ(after_stacks, 3u);
+        EXPECT_EQ(after_rows, 3u);
+        ASSERT_EQ(begun.size(), 3u);
+        EXPECT_LT(std::ranges::find(begun, 0u), std::ranges::find(begun, 2u));
+    }
+    for (const char* row : {"0", "1", "2"}) {
+        for (const char* file : {"topography.tif", "images/z_0003.tif"}) {
+            EXPECT_EQ(read_file(folder_ / "1" / row / file), read_file(folder_ / "2" / row / file)) << row << file;
+        }
+    }
+    EXPECT_NE(read_file(folder_ / "1/0/topography.tif"), read_file(folder_ / "1/1/topography.tif"));
+    // What a listener throws ends the measurement.
+    int begun = 0;
+    const SweptStacks again(swept("1"));
+    EXPECT_THROW(again.measure(progress, 2,
+                               {.begins = [&](std::size_t) { ++begun; },
+                                .after_stack = [](std::size_t, const StackResult&) { throw RunError("enough"); },
+                                .after_row = {}}),
+                 RunError);
+    EXPECT_LE(begun, 2);
 }
 
 } // namespace

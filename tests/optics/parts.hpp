@@ -126,7 +126,8 @@ inline physics::f64::Exposure exposure_of(double top_distance, std::uint32_t see
             .focal_height = 0,
             .top_distance_residual = 0,
             .beside_x = 0,
-            .beside_y = 0};
+            .beside_y = 0,
+            .magnification_change = 0};
 }
 
 } // namespace vkfv::test

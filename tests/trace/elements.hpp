@@ -128,7 +128,8 @@ inline std::vector<Detection> trace_bench(const Bench& bench, const physics::f64
                             .focal_height = 0,
                             .top_distance_residual = 0,
                             .beside_x = 0,
-                            .beside_y = 0};
+                            .beside_y = 0,
+                            .magnification_change = 0};
     for (std::uint32_t path = 0; path < paths; ++path) {
         ends.push_back(
             trace_nonsequential(bench, instrument, SpecimenRecord{}, exposure, below_the_axis(), uvec2(path, 0)));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <thread>
 #include <vector>
 
 namespace vkfv {
@@ -23,6 +24,7 @@ struct Stages {
     std::vector<Stage> all;
     std::size_t now = 0;
     Clock::time_point since{};
+    std::thread::id thread; // that enters stages
 
     void leave() {
         const auto time = Clock::now();
@@ -47,6 +49,11 @@ double seconds(Clock::duration time) {
 void enter_stage(std::string_view name) {
     Stages& known = stages();
     const std::scoped_lock lock(known.mutex);
+    if (known.all.empty()) {
+        known.thread = std::this_thread::get_id();
+    } else if (known.thread != std::this_thread::get_id()) {
+        return;
+    }
     known.leave();
     const auto found = std::ranges::find(known.all, name, &Stage::name);
     known.now = static_cast<std::size_t>(found - known.all.begin());

@@ -8,8 +8,8 @@
 
 namespace vkfv {
 
-// Enters a stage. Work of other threads meanwhile belongs to it too. A name used before continues to accumulate. Only
-// the main thread may call it.
+// Enters a stage. Work of other threads meanwhile belongs to it too. A name used before continues to accumulate. Calls
+// of threads other than the first caller's have no effect.
 void enter_stage(std::string_view name);
 
 // The current stage and the time at which it was entered, for any thread. The name is empty before the first stage.

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace vkfv::measurement {
 
@@ -295,20 +296,22 @@ BudgetResult budget(const BudgetRequest& request, Progress& progress) {
     const WarningsOnce warnings_once; // the report of each stack has its own
     BudgetOrigin origin{
         .program = request.program, .title = request.file.stem().string(), .devices = {}, .seed = base.trace.seed};
-    std::vector<std::optional<MeasurandValue>> values;
-    for (const auto& run : plan) {
-        spdlog::info("{} of {}: {}", values.size() + 1, plan.size(), run.name);
-        const auto row = swept.measure_next(progress, [&](const StackResult& stack) {
-            values.push_back(measurand(stack.evaluation, request.measurand));
-            if (values.size() == 1 && !values.front()) {
-                throw RunError(fmt::format("the stack has no {} with a truth. It has \"{}\"", request.measurand,
-                                           fmt::join(measurands(stack.evaluation), "\", \"")));
-            }
-        });
-        if (!row.device.empty() && std::ranges::find(origin.devices, row.device) == origin.devices.end()) {
-            origin.devices.push_back(row.device);
-        }
-    }
+    std::vector<std::optional<MeasurandValue>> values(plan.size());
+    std::set<std::string> devices;
+    swept.measure(
+        progress, swept.lanes(),
+        {.begins = [&](std::size_t run) { spdlog::info("{} of {}: {}", run + 1, plan.size(), plan[run].name); },
+         .after_stack =
+             [&](std::size_t run, const StackResult& stack) {
+                 values[run] = measurand(stack.evaluation, request.measurand);
+                 if (run == 0 && !values[run]) {
+                     throw RunError(fmt::format("the stack has no {} with a truth. It has \"{}\"", request.measurand,
+                                                fmt::join(measurands(stack.evaluation), "\", \"")));
+                 }
+             },
+         .after_row = [&](std::size_t, SweepRow&& row) { devices.insert(row.device); }});
+    devices.erase("");
+    origin.devices.assign(devices.begin(), devices.end());
     const Budget found = of_budget::evaluated(values, request, base, runs.values());
     BudgetResult result{.document = budget_json(found, origin), .folder = results.path()};
     results.write("budget.json", json_text(result.document) + "\n");

@@ -20,7 +20,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <sstream>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -159,6 +161,9 @@ struct Plan {
     const Instrument* instrument;
     std::vector<Trial> trials{};
     std::vector<std::string> remarks{};
+    std::vector<TrialResult> results{}; // of the trials, until findings are known
+    std::size_t measured = 0;           // trials
+    Findings findings{};
 };
 
 } // namespace
@@ -178,9 +183,15 @@ CalibrationResult calibrate(const CalibrationRequest& request, Progress& progres
             rows.push_back({with_specimen(*plan.instrument, base.file, trial,
                                           results.path() / characteristic->name / trial.name)});
         }
+        plan.results.resize(plan.trials.size());
         plans.push_back(std::move(plan));
     }
-    const std::size_t stacks = rows.size();
+    std::vector<std::pair<Plan*, std::size_t>> places; // of the rows: a plan and one of its trials
+    for (Plan& plan : plans) {
+        for (std::size_t trial = 0; trial < plan.trials.size(); ++trial) {
+            places.emplace_back(&plan, trial);
+        }
+    }
     SweptStacks swept(std::move(rows));
     swept.require_space(results.path());
     spdlog::info("{}", swept.plan());
@@ -192,22 +203,32 @@ CalibrationResult calibrate(const CalibrationRequest& request, Progress& progres
                             .conditions = vertical.conditions,
                             .layout = vertical.layout,
                             .configuration = vertical.toml};
-    std::size_t number = 0;
-    for (const Plan& plan : plans) {
-        CertificateEntry entry{.characteristic = plan.characteristic};
-        std::vector<TrialResult> trials;
+    // A characteristic is evaluated when the last of its trials is measured, so that heights are kept no longer.
+    std::set<std::string> devices;
+    swept.measure(progress, swept.lanes(),
+                  {.begins =
+                       [&](std::size_t row) {
+                           const auto& [plan, trial] = places[row];
+                           spdlog::info("{} of {}: {}, {}", row + 1, places.size(), plan->characteristic->name,
+                                        plan->trials[trial].name);
+                       },
+                   .after_stack =
+                       [&](std::size_t row, const StackResult& stack) {
+                           const auto& [plan, trial] = places[row];
+                           plan->results[trial] = result_of(plan->trials[trial].name, stack.evaluation);
+                           if (++plan->measured == plan->trials.size()) {
+                               plan->findings =
+                                   plan->characteristic->evaluate(plan->instrument->conditions, plan->results);
+                               plan->results.clear();
+                           }
+                       },
+                   .after_row = [&](std::size_t, SweepRow&& row) { devices.insert(row.device); }});
+    devices.erase("");
+    certificate.devices.assign(devices.begin(), devices.end());
+    for (Plan& plan : plans) {
+        CertificateEntry entry{.characteristic = plan.characteristic, .findings = std::move(plan.findings)};
         for (const Trial& trial : plan.trials) {
-            spdlog::info("{} of {}: {}, {}", ++number, stacks, plan.characteristic->name, trial.name);
-            const auto row = swept.measure_next(
-                progress, [&](const StackResult& stack) { trials.push_back(result_of(trial.name, stack.evaluation)); });
-            if (!row.device.empty() &&
-                std::ranges::find(certificate.devices, row.device) == certificate.devices.end()) {
-                certificate.devices.push_back(row.device);
-            }
             entry.trials.push_back((fs::path(plan.characteristic->name) / trial.name).generic_string());
-        }
-        if (!trials.empty()) {
-            entry.findings = plan.characteristic->evaluate(plan.instrument->conditions, trials);
         }
         if (plan.instrument->conditions.pixels != certificate.conditions.pixels) {
             const ImageSize pixels = plan.instrument->conditions.pixels;

@@ -76,6 +76,7 @@ optics::Instrument assemble_silently(const Configuration& configuration, const s
     const auto stage = stage_motion(configuration);
     const double astray = stage ? stage->farthest(focal_heights) : 0;
     for (const double focal_height : focal_heights) {
+        description.image.greatest_height = std::max(description.image.greatest_height, std::abs(focal_height));
         for (const double height : {record.top, record.bottom}) {
             description.greatest_defocus =
                 std::max(description.greatest_defocus, std::abs(height - focal_height) + astray);

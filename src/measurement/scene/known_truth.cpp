@@ -13,10 +13,16 @@ namespace vkfv::measurement {
 
 namespace {
 
-// The sideways displacement of the specimen by its stage as a function of the height of the focal plane, mm.
+// What moves the image sideways while the focal plane rises.
+struct Sight {
+    glm::dvec2 beside{0};   // mm, displacement of the specimen by its stage
+    double image_scale = 1; // magnification over that at z = 0
+};
+
+// Sight as a function of the height of the focal plane, mm.
 class WayAside {
   public:
-    explicit WayAside(const Configuration& configuration) {
+    WayAside(const Configuration& configuration, double magnification_rate) : magnification_rate_(magnification_rate) {
         const auto motion = stage_motion(configuration);
         if (!motion || !configuration.scan) {
             return;
@@ -27,13 +33,23 @@ class WayAside {
             points_.push_back({.height = taken.height, .beside = taken.beside});
         }
         std::ranges::stable_sort(points_, {}, &Point::height);
-        moves_ = std::ranges::any_of(points_, [](const Point& point) { return point.beside != glm::dvec2(0); });
+        if (std::ranges::all_of(points_, [](const Point& point) { return point.beside == glm::dvec2(0); })) {
+            points_.clear();
+        }
     }
 
-    bool moves() const { return moves_; }
+    bool moves() const { return !points_.empty() || magnification_rate_ != 0; }
 
+    Sight at(double height) const {
+        return {.beside = beside_at(height), .image_scale = 1 + magnification_rate_ * height};
+    }
+
+  private:
     // The displacement is linear between images; below the first and above the last it is theirs.
-    glm::dvec2 at(double height) const {
+    glm::dvec2 beside_at(double height) const {
+        if (points_.empty()) {
+            return glm::dvec2(0);
+        }
         const auto above = std::ranges::lower_bound(points_, height, {}, &Point::height);
         if (above == points_.begin()) {
             return points_.front().beside;
@@ -46,13 +62,12 @@ class WayAside {
         return glm::mix(below.beside, above->beside, share);
     }
 
-  private:
     struct Point {
         double height;
         glm::dvec2 beside;
     };
-    std::vector<Point> points_;
-    bool moves_ = false;
+    double magnification_rate_; // 1/mm
+    std::vector<Point> points_; // images of a stage that moves sideways
 };
 
 class PixelTruth {
@@ -60,47 +75,54 @@ class PixelTruth {
     PixelTruth(const optics::PixelMapping& mapping, const specimen::Specimen& specimen, const PixelGrid& nominal)
         : mapping_(mapping), specimen_(specimen), nominal_(nominal) {}
 
-    // The heights of a specimen that stands displaced by aside(column, row), mm, while that pixel is in focus.
-    template <class Aside>
-    surface::HeightMap displaced(const Aside& aside) const {
+    // The heights of a specimen that each pixel sees as sight(column, row) tells while it is in focus.
+    template <class SightOf>
+    surface::HeightMap seen(const SightOf& sight) const {
         return specimen::truth(specimen_, nominal_, [&](int column, int row) {
             const glm::dvec2 at = nominal_at(column, row);
-            const glm::dmat2 rate = mapping_.rate(at);
-            return specimen::PixelArea{.middle = mapping_.place(at) - aside(column, row),
+            const Sight one = sight(column, row);
+            const glm::dmat2 rate = mapping_.rate(at, one.image_scale);
+            return specimen::PixelArea{.middle = mapping_.place(at, one.image_scale) - one.beside,
                                        .along_row = rate[0] * nominal_.pitch_x,
                                        .along_column = rate[1] * nominal_.pitch_y};
         });
     }
 
-    // The heights, with the specimen's mean displacement by the stage over the pixels. The height of a pixel tells when
-    // it is in focus and so where the specimen stands then, which in turn tells the height. Repetition solves this; it
-    // converges where the specimen rises by less than the stage does while it moves by as much sideways.
-    surface::HeightMap along(const WayAside& way, glm::dvec2& mean_aside) const {
+    // The heights, with the mean sight of the pixels. The height of a pixel tells when it is in focus and so what it
+    // sees then, which in turn tells the height. Repetition solves this; it converges where the specimen rises by less
+    // than the focal plane does while the image moves by as much sideways.
+    surface::HeightMap along(const WayAside& way, Sight& mean) const {
         constexpr int most_repetitions = 6;
         constexpr double enough = 0.005; // share of a pitch
         constexpr double most_unsettled_share = 1e-3;
-        auto heights = displaced([&](int, int) { return way.at(0); });
-        Grid<glm::dvec2> aside(nominal_.columns, nominal_.rows, way.at(0));
+        auto heights = seen([&](int, int) { return way.at(0); });
+        Grid<Sight> sights(nominal_.columns, nominal_.rows, way.at(0));
         for (int repetition = 0; repetition < most_repetitions; ++repetition) {
             std::size_t unsettled = 0;
             for (int row = 0; row < nominal_.rows; ++row) {
                 for (int column = 0; column < nominal_.columns; ++column) {
                     const double height = heights.height(column, row);
                     if (std::isfinite(height)) {
-                        const glm::dvec2 there = way.at(height - mapping_.focus(nominal_at(column, row)));
-                        unsettled += glm::distance(there, aside(column, row)) > enough * nominal_.pitch_x ? 1 : 0;
-                        aside(column, row) = there;
+                        const glm::dvec2 at = nominal_at(column, row);
+                        Sight& sight = sights(column, row);
+                        const Sight there = way.at(height - mapping_.focus(at, sight.image_scale));
+                        const double moved = glm::distance(there.beside, sight.beside) +
+                                             std::abs(there.image_scale - sight.image_scale) * glm::length(at);
+                        unsettled += moved > enough * nominal_.pitch_x ? 1 : 0;
+                        sight = there;
                     }
                 }
             }
-            heights = displaced([&](int column, int row) { return aside(column, row); });
-            if (static_cast<double>(unsettled) <= most_unsettled_share * static_cast<double>(aside.values.size())) {
+            heights = seen([&](int column, int row) { return sights(column, row); });
+            if (static_cast<double>(unsettled) <= most_unsettled_share * static_cast<double>(sights.values.size())) {
                 break;
             }
         }
-        mean_aside = glm::dvec2(0);
-        for (const glm::dvec2& one : aside.values) {
-            mean_aside += one / static_cast<double>(aside.values.size());
+        mean = {.beside = glm::dvec2(0), .image_scale = 0};
+        const double share = 1 / static_cast<double>(sights.values.size());
+        for (const Sight& one : sights.values) {
+            mean.beside += share * one.beside;
+            mean.image_scale += share * one.image_scale;
         }
         return heights;
     }
@@ -142,15 +164,16 @@ KnownTruth truth_on_pixels(const optics::Instrument& instrument, const Configura
     const ImageSize pixels = configuration.instrument.detector_pixels;
     const double true_pitch = instrument.first_order.pixel_pitch, pitch = height_pitch(instrument, configuration);
     const PixelTruth truth(mapping, specimen, PixelGrid::centred(pixels, true_pitch));
-    const WayAside way(configuration);
+    const WayAside way(configuration, instrument.magnification_rate);
     KnownTruth known{.heights = {}, .undistorted = {}, .mapping = mapping.deviation()};
     known.mapping.amplification *= pitch / true_pitch;
     if (way.moves()) {
-        glm::dvec2 mean_aside(0);
-        known.heights = truth.along(way, mean_aside);
-        known.mapping.shift -= mean_aside;
+        Sight mean;
+        known.heights = truth.along(way, mean);
+        known.mapping.shift -= mean.beside;
+        known.mapping.amplification *= mean.image_scale;
     } else {
-        known.heights = truth.displaced([](int, int) { return glm::dvec2(0); });
+        known.heights = truth.seen([](int, int) { return Sight{}; });
     }
     PixelGrid grid = PixelGrid::centred(pixels, pitch);
     grid.x0 += known.mapping.shift.x;

@@ -24,7 +24,8 @@ struct KnownTruth {
     // found on this map; other specimens have none.
     std::optional<surface::HeightMap> undistorted;
     // The deviation of the places that the pixels see from the grid, before its middle was moved. The shift includes
-    // the mean displacement of the specimen by its stage while the pixels are in focus.
+    // the mean displacement of the specimen by its stage while the pixels are in focus, the amplification the mean
+    // magnification then.
     optics::MappingDeviation mapping;
 };
 

@@ -85,14 +85,25 @@ SweepResult run_sweep(const std::filesystem::path& file, const std::vector<TomlO
     const CountedWork work(sweep.stacks ? swept.images() : static_cast<double>(list.size()));
     Surfaces surfaces;
     StackRuns runs; // also has the devices for images
-    std::vector<SweepRow> rows;
-    for (const auto& values : list) {
-        const std::string name = sweep_name(sweep, values);
-        spdlog::info("{} of {}: {}", rows.size() + 1, list.size(), name);
-        rows.push_back(sweep.stacks ? swept.measure_next(progress, after_stack)
-                                    : image_row(load_configuration(file, with_values(overrides, sweep, values), needs),
-                                                results, name, surfaces, runs));
-        rows.back().values = values;
+    std::vector<SweepRow> rows(list.size());
+    const auto begin = [&](std::size_t row) {
+        const std::string name = sweep_name(sweep, list[row]);
+        spdlog::info("{} of {}: {}", row + 1, list.size(), name);
+        return name;
+    };
+    if (sweep.stacks) {
+        swept.measure(progress, swept.lanes(),
+                      {.begins = [&](std::size_t row) { begin(row); },
+                       .after_stack = [&](std::size_t, const StackResult& stack) { after_stack(stack); },
+                       .after_row = [&](std::size_t row, SweepRow&& measured) { rows[row] = std::move(measured); }});
+    } else {
+        for (std::size_t row = 0; row < list.size(); ++row) {
+            rows[row] = image_row(load_configuration(file, with_values(overrides, sweep, list[row]), needs), results,
+                                  begin(row), surfaces, runs);
+        }
+    }
+    for (std::size_t row = 0; row < list.size(); ++row) {
+        rows[row].values = list[row];
     }
     const std::string title = file.stem().string();
     results.write("sweep.csv", sweep_csv(sweep, rows));

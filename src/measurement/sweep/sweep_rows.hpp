@@ -38,9 +38,23 @@ class SweptStacks {
     // The number of images that are traced if none is there from an earlier run.
     double images() const;
 
-    // Measures the stacks of the next combination. The row tells how far their heights agree with each other, and their
-    // mean figures. after_stack gets each stack when it is measured.
-    SweepRow measure_next(Progress& progress, const std::function<void(const StackResult&)>& after_stack);
+    // The number of stacks that are best measured at once: one where the processor traces, several where a GPU would
+    // wait while heights are evaluated and files are written. All of them fit into the GPU's memory.
+    int lanes() const;
+
+    // What is told of the measurement, by calls that never overlap. With several lanes they come from other threads and
+    // in any order of the rows.
+    struct Listener {
+        std::function<void(std::size_t row)> begins;                          // before the row's first stack
+        std::function<void(std::size_t row, const StackResult&)> after_stack; // when a stack is measured
+        // The row tells how far the heights of its stacks agree with each other, and their mean figures.
+        std::function<void(std::size_t row, SweepRow&&)> after_row;
+    };
+    // Measures all stacks, as many at once as there are lanes; those of the same light one after the other. Files have
+    // the same bytes however many lanes there are. The first exception, also of a listener, ends the measurement when
+    // the stacks under way are done, and is rethrown. With several lanes `progress` is not used, as it tells of one
+    // stack.
+    void measure(Progress& progress, int lanes, const Listener& listener) const;
 
   private:
     struct Keys {
@@ -48,12 +62,14 @@ class SweptStacks {
     };
     StackAmongOthers others_of(std::size_t stack) const;
     bool is_first_of_light(std::size_t stack) const;
+    std::vector<std::vector<std::size_t>> rows_by_light() const;
+    SweepRow measure_row(std::size_t row, StackRuns& runs, Progress& progress,
+                         const std::function<void(const StackResult&)>& after_stack) const;
 
     std::vector<std::vector<Configuration>> rows_;
+    std::vector<std::size_t> first_stacks_;    // of the rows
     std::vector<const Configuration*> stacks_; // of all rows
     std::vector<Keys> keys_;
-    std::size_t next_row_ = 0, next_stack_ = 0;
-    StackRuns runs_;
 };
 
 } // namespace vkfv::measurement

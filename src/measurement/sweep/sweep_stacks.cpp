@@ -2,14 +2,22 @@
 
 #include "core/mathematics/units.hpp"
 #include "core/messages/heartbeat.hpp"
+#include "core/messages/stages.hpp"
+#include "core/threads/job_queue.hpp"
+#include "measurement/judgement/plan_warnings.hpp"
+#include "measurement/scene/assembly.hpp"
 #include "measurement/scene/disk_space.hpp"
+#include "measurement/scene/host_memory.hpp"
 #include "report/declared_figures.hpp"
+#include "vulkan/device.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <mutex>
 #include <set>
 #include <utility>
 
@@ -89,6 +97,7 @@ Grid<float> picture_of(const Grid<double>& heights) {
 
 SweptStacks::SweptStacks(std::vector<std::vector<Configuration>> rows) : rows_(std::move(rows)) {
     for (const auto& row : rows_) {
+        first_stacks_.push_back(stacks_.size());
         for (const Configuration& configuration : row) {
             stacks_.push_back(&configuration);
             keys_.push_back({.images = image_key(configuration), .light = light_key(configuration)});
@@ -161,16 +170,83 @@ void SweptStacks::require_space(const std::filesystem::path& folder) const {
     }
 }
 
-SweepRow SweptStacks::measure_next(Progress& progress, const std::function<void(const StackResult&)>& after_stack) {
-    const std::vector<Configuration>& repeats = rows_[next_row_++];
+// Rows that share light, each group in its order, the groups in the order of their first rows.
+std::vector<std::vector<std::size_t>> SweptStacks::rows_by_light() const {
+    std::vector<std::vector<std::size_t>> groups;
+    std::vector<std::set<std::string>> lights; // of each group
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+        std::vector<std::size_t> joined;
+        std::set<std::string> own;
+        for (std::size_t k = 0; k < rows_[row].size(); ++k) {
+            own.insert(keys_[first_stacks_[row] + k].light);
+        }
+        // Groups that the row has light in common with become one.
+        std::size_t into = groups.size();
+        for (std::size_t group = 0; group < groups.size(); ++group) {
+            if (std::ranges::none_of(own, [&](const std::string& light) { return lights[group].contains(light); })) {
+                continue;
+            }
+            if (into == groups.size()) {
+                into = group;
+            } else {
+                groups[into].insert(groups[into].end(), groups[group].begin(), groups[group].end());
+                lights[into].merge(lights[group]);
+                groups[group].clear();
+                lights[group].clear();
+            }
+        }
+        if (into == groups.size()) {
+            groups.emplace_back();
+            lights.emplace_back();
+        }
+        groups[into].push_back(row);
+        lights[into].merge(own);
+    }
+    std::erase_if(groups, [](const auto& group) { return group.empty(); });
+    std::ranges::for_each(groups, [](auto& group) { std::ranges::sort(group); });
+    return groups;
+}
+
+int SweptStacks::lanes() const {
+    constexpr int most_lanes = 3; // more gain nothing: measured on an H200 with 16 cores
+    const Configuration& first = *stacks_.front();
+    if (const char* forced = std::getenv("VKFV_LANES_EXPERIMENT")) {
+        return std::atoi(forced);
+    }
+    if (first.trace.device == "host") {
+        return 1;
+    }
+    const auto reports = vulkan::list_devices();
+    double memory = static_cast<double>(memory_of_host());
+    for (const std::size_t device : vulkan::choose_devices(reports, first.trace.device)) {
+        if (vulkan::is_software(reports[device])) {
+            return 1;
+        }
+        memory = std::min(memory, static_cast<double>(reports[device].memory_bytes));
+    }
+    double largest = 0;
+    for (std::size_t k = 0; k < stacks_.size(); ++k) {
+        if (k == 0 || stacks_[k]->instrument.detector_pixels != stacks_[k - 1]->instrument.detector_pixels) {
+            largest = std::max(largest, evaluation_bytes(*stacks_[k], assemble_for_figures(*stacks_[k])));
+        }
+    }
+    constexpr double share = 0.25; // of the memory; light, kernels and images of waves take the rest
+    return std::clamp(static_cast<int>(share * memory / largest), 1, most_lanes);
+}
+
+SweepRow SweptStacks::measure_row(std::size_t number, StackRuns& runs, Progress& progress,
+                                  const std::function<void(const StackResult&)>& after_stack) const {
+    const std::vector<Configuration>& repeats = rows_[number];
     std::vector<Grid<double>> heights;
     std::vector<Json> figures;
+    heights.reserve(repeats.size());
+    figures.reserve(repeats.size());
     double rays_per_image = 0;
     SweepRow row;
-    for (const auto& configuration : repeats) {
-        const std::size_t number = next_stack_++;
-        const auto stack = runs_.measure(configuration, progress, others_of(number));
-        if (is_first_of_light(number)) {
+    for (std::size_t k = 0; k < repeats.size(); ++k) {
+        const std::size_t number_of_stack = first_stacks_[number] + k;
+        const auto stack = runs.measure(repeats[k], progress, others_of(number_of_stack));
+        if (is_first_of_light(number_of_stack)) {
             leave_out_work(stack.traced.kept);
         }
         after_stack(stack);
@@ -189,6 +265,53 @@ SweepRow SweptStacks::measure_next(Progress& progress, const std::function<void(
     }
     row.picture = picture_of(heights.front());
     return row;
+}
+
+void SweptStacks::measure(Progress& progress, int lanes, const Listener& listener) const {
+    const auto groups = rows_by_light();
+    std::mutex telling;
+    const auto told = [&](const auto& tell, auto&&... what) {
+        const std::scoped_lock lock(telling);
+        if (tell) {
+            tell(std::forward<decltype(what)>(what)...);
+        }
+    };
+    std::atomic<std::size_t> next = 0;
+    std::atomic<bool> ends = false;
+    const auto work = [&](Progress& own) {
+        StackRuns runs;
+        try {
+            for (std::size_t group = next++; group < groups.size(); group = next++) {
+                for (const std::size_t row : groups[group]) {
+                    if (ends) {
+                        return;
+                    }
+                    told(listener.begins, row);
+                    told(listener.after_row, row, measure_row(row, runs, own, [&](const StackResult& stack) {
+                             told(listener.after_stack, row, stack);
+                         }));
+                }
+            }
+        } catch (...) {
+            ends = true;
+            throw;
+        }
+    };
+    const int threads = std::min(lanes, static_cast<int>(groups.size()));
+    if (threads <= 1) {
+        work(progress);
+        return;
+    }
+    enter_stage("stacks side by side");
+    JobQueue queue(threads, static_cast<std::size_t>(threads));
+    for (int lane = 0; lane < threads; ++lane) {
+        queue.add([&] {
+            Progress silent = Progress::on_standard_error(true);
+            work(silent);
+        });
+    }
+    queue.finish();
+    enter_stage("results of the stacks");
 }
 
 } // namespace vkfv::measurement

@@ -33,12 +33,19 @@ struct AxialLayout {
     double working_distance = 0;
     glm::dvec2 field_corner{0}; // corner of the detector's field in the object
     double field_half_diagonal = 0;
+    double image_distortion = 0; // 1/mm^2 on the detector (shaders/physics/image_distortion.glsl)
+    // The farthest place of the detector's field in the object, at any focal height, over field_half_diagonal; at least
+    // 1. It exceeds 1 where the image is compressed.
+    double reach = 1;
+    double seen_half_diagonal() const { return reach * field_half_diagonal; }
     double detector_distance = 0; // from the tube lens' last vertex
     double objective_front = 0;   // heights of the first and last vertex
     double objective_back = 0;
     Pose front; // frame in which light enters the imaging train
 };
 AxialLayout lay_out(const InstrumentDescription& description);
+// image_shear of shaders/physics/image_distortion.glsl.
+double image_shear(const ImageDeviations& image);
 
 // A fold mirror in the unfolded space.
 struct Fold {

@@ -277,7 +277,7 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
     turned.constants.imaging_first = turned.constants.illumination_count;
     turned.constants.imaging_count = static_cast<int>(to_source.size());
 
-    const double field_radius = 1.05 * layout.field_half_diagonal;
+    const double field_radius = 1.05 * layout.seen_half_diagonal();
     const ExitPupil pupil = exit_pupil(imaging.imaging, layout.field_corner.x, field_radius, hulls);
     auto& optics = turned.optics;
     optics.pupil_radius = pupil.radius;

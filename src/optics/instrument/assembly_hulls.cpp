@@ -36,7 +36,7 @@ DiscLight light_of_detector(const InstrumentDescription& description, const Axia
     const ImageSize& pixels = description.detector_pixels;
     DiscLight light;
     light.train = placed.from_detector;
-    light.radius = std::hypot(half_width, half_width * pixels.rows / pixels.columns);
+    light.radius = layout.reach * std::hypot(half_width, half_width * pixels.rows / pixels.columns);
     light.spectral = spectral_range(description.source.spectrum.value_or(spectrum), spectrum);
     light.middle = {-slope(axial).x, slope(axial).y};
     light.towards = way != 0 ? -(slope(aside).x - slope(axial).x) / way : 0;

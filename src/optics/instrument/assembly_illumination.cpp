@@ -186,17 +186,17 @@ double field_stop_magnification(const AxialLayout& layout, const std::vector<Sur
 // Warns if the field stop's image leaves part of the detector's field dark.
 std::vector<Warning> warning_of_field_stop(const AxialLayout& layout, const Surface& stop, double magnification) {
     const double lit_radius = std::abs(magnification) * std::sqrt(stop.semi_diameter_squared);
-    if (!(lit_radius < layout.field_half_diagonal)) {
+    if (!(lit_radius < layout.seen_half_diagonal())) {
         return {};
     }
     constexpr double margin = 1.05; // aberrations blur the rim by a few percent
     return {{.code = "small-field-stop",
              .key = "illumination.field_stop_radius_mm",
              .value = number_text(std::sqrt(stop.semi_diameter_squared)),
-             .works = number_text(margin * layout.field_half_diagonal / std::abs(magnification), Rounding::up),
+             .works = number_text(margin * layout.seen_half_diagonal() / std::abs(magnification), Rounding::up),
              .sentence = fmt::format("The field stop's image, {:.4g} mm in radius on the specimen, does not cover the "
                                      "detector's field, {:.4g} mm to its corners.",
-                                     lit_radius, layout.field_half_diagonal)}};
+                                     lit_radius, layout.seen_half_diagonal())}};
 }
 
 // stop: index of the surface about whose centre light is sampled.

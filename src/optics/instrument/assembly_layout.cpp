@@ -1,9 +1,11 @@
 #include "optics/instrument/assembly.hpp"
 
+#include "core/mathematics/units.hpp"
 #include "optics/train/first_order.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace vkfv::optics {
@@ -49,7 +51,51 @@ AxialLayout place_lenses(const InstrumentDescription& description) {
     return layout;
 }
 
+// Lays out how far the image deviates from the lenses', and how far the detector's corners see by it.
+void deviate(AxialLayout& layout, const InstrumentDescription& description) {
+    const ImageDeviations& image = description.image;
+    const double change = std::abs(image.magnification_rate) * image.greatest_height;
+    constexpr double most_change = 0.1;
+    if (!(change <= most_change)) {
+        refuse("objective.magnification_per_um", fmt::format("{:.6g}", image.magnification_rate * mm_per_um),
+               fmt::format("a magnification that changes by at most {:g} % from z = 0 to the ends of the scan",
+                           100 * most_change),
+               fmt::format("It changes by {:.3g} %: choose a smaller value.", 100 * change));
+    }
+    const ImageSize& pixels = description.detector_pixels;
+    const glm::dvec2 corner = 0.5 * description.detector_width *
+                              glm::dvec2(1, static_cast<double>(pixels.rows) / pixels.columns) / (1 - change);
+    const double height = image.field_height * layout.magnification; // mm on the detector
+    layout.image_distortion = image.distortion / (height * height);
+    physics::f64::Instrument constants{};
+    constants.image_distortion = layout.image_distortion;
+    constants.image_shear = image_shear(image);
+    const physics::f64::Exposure exposure{};
+    for (const double side : {-1.0, 1.0}) {
+        const glm::dvec2 recorded(corner.x, side * corner.y);
+        const glm::dvec2 sheared(recorded.x - constants.image_shear * recorded.y, recorded.y);
+        // Beyond these limits light would be recorded twice, or the third order alone describe no lens.
+        constexpr double least = -0.12, most = 0.3;
+        const double at_corner = layout.image_distortion * glm::dot(sheared, sheared);
+        if (!(at_corner >= least && at_corner <= most)) {
+            refuse(
+                "detector.distortion", fmt::format("{:.6g}", 100 * image.distortion),
+                fmt::format("a distortion from {:g} to {:g} % in the corners of the detector", 100 * least, 100 * most),
+                fmt::format("It is {:.3g} % there: choose a smaller value, or a larger detector.distortion_field_mm.",
+                            100 * at_corner));
+        }
+        const glm::dvec2 seen = physics::f64::arrival_place(constants, exposure, recorded).place;
+        layout.reach = std::max(layout.reach, glm::length(seen) / ((1 - change) * glm::length(corner)));
+    }
+}
+
 } // namespace
+
+double image_shear(const ImageDeviations& image) {
+    // Columns at more than a right angle to the rows lean against x: what arrives at (-tan(shear) y, y) is recorded at
+    // (0, y).
+    return std::tan(image.shear);
+}
 
 AxialLayout lay_out(const InstrumentDescription& description) {
     AxialLayout layout = place_lenses(description);
@@ -62,6 +108,7 @@ AxialLayout lay_out(const InstrumentDescription& description) {
     const ImageSize& pixels = description.detector_pixels;
     layout.field_corner = {half_width, half_width * pixels.rows / pixels.columns};
     layout.field_half_diagonal = glm::length(layout.field_corner);
+    deviate(layout, description);
 
     // A plate of thickness t and index n raises the focus by t (1 - n0 / n) in a medium of index n0.
     const double free_distance = layout.working_distance;

@@ -19,7 +19,7 @@ double ring_emission_sine(const InstrumentDescription& description, const AxialL
     const Spectrum& spectrum = description.spectrum;
     constexpr double margin = 1.5; // factor on the detector's field
     const double lit_radius =
-        std::hypot(ring.lit_radius.value_or(margin * layout.field_half_diagonal), description.greatest_defocus);
+        std::hypot(ring.lit_radius.value_or(margin * layout.seen_half_diagonal()), description.greatest_defocus);
     const double nearest = ring.distance - lit_radius;
     const double aside = lit_radius + 0.5 * ring.width;
     const double shift = layout.cover.empty() ? 0 : description.cover_glass->thickness;

@@ -265,10 +265,10 @@ Worst worst_of(const Setting& setting, const std::vector<glm::dvec2>& points, gl
         const Outline outline = outline_at(imaging, points[static_cast<std::size_t>(k)]);
         PointImage image = point_image(imaging, outline, setting.height, setting.nodes);
         image.relative_light = outline.area() / setting.on_axis.area();
-        return Worst{image, outline,
-                     real_magnification(setting, imaging, outline, axis_centroid) /
-                             setting.instrument.first_order.magnification -
-                         1};
+        const double magnification = real_magnification(setting, imaging, outline, axis_centroid);
+        const double distance = magnification * glm::length(outline.position);
+        const double recorded = 1 + setting.instrument.constants.image_distortion * distance * distance;
+        return Worst{image, outline, recorded * magnification / setting.instrument.first_order.magnification - 1};
     });
     Worst worst = all.front();
     for (const Worst& one : all) {

@@ -72,6 +72,8 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
     const ImageSize& pixels = description.detector_pixels;
     constants.detector_half_width = 0.5 * description.detector_width;
     constants.detector_half_height = constants.detector_half_width * pixels.rows / pixels.columns;
+    constants.image_distortion = layout.image_distortion;
+    constants.image_shear = image_shear(description.image);
     constants.pixel_reach = description.fill_factor < 1 ? 0.5 * std::sqrt(description.fill_factor) : 1;
     constants.detector_columns = pixels.columns;
     constants.detector_rows = pixels.rows;
@@ -79,7 +81,7 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
     constants.gate_slope = 1;
     // The field is slightly enlarged: aberrations let the detector see past its paraxial edge.
     constants.gate_radius =
-        std::max(hulls.gate_radius(), gate_radius(imaging.imaging, 1.05 * layout.field_half_diagonal,
+        std::max(hulls.gate_radius(), gate_radius(imaging.imaging, 1.05 * layout.seen_half_diagonal(),
                                                   hulls.heights().low, hulls.heights().high));
     constants.light_field = description.light_field.value_or(LightField{}).record;
     constants.spectrum_centre = spectrum.centre();
@@ -145,6 +147,8 @@ Instrument reduce(const InstrumentDescription& description, const AxialLayout& l
     instrument.first_order = first_order_of(description, layout, measured, illumination);
     instrument.flux = description.source.flux;
     instrument.fill_factor = description.fill_factor;
+    instrument.magnification_rate = description.image.magnification_rate;
+    instrument.image_reach = layout.reach;
     instrument.splitter_reflectance = description.source.ring ? 1 : description.splitter.reflectance;
     instrument.splitter_transmittance = description.splitter.transmittance;
     instrument.illumination_surfaces_before_splitter = illumination.surfaces_before_splitter;
@@ -157,7 +161,7 @@ Instrument reduce(const InstrumentDescription& description, const AxialLayout& l
 }
 
 std::optional<glm::dvec2> single_scatter_aim(const InstrumentDescription& description, const Imaging& imaging,
-                                             const Instrument& instrument) {
+                                             double reach, const Instrument& instrument) {
     const auto& constants = instrument.constants;
     const std::span<const Surface> surfaces = instrument.surfaces;
     const auto illumination = surfaces.first(static_cast<std::size_t>(constants.illumination_count));
@@ -166,17 +170,17 @@ std::optional<glm::dvec2> single_scatter_aim(const InstrumentDescription& descri
         return std::nullopt;
     }
     const double radius = description.source.outer_radius();
-    const auto sides =
-        aim_at_detector({.illumination = illumination,
-                         .imaging = imaging.train,
-                         .source = {.radius = radius,
-                                    .distance = constants.source_distance,
-                                    .monochromatic = description.spectrum.monochromatic()},
-                         .front_vertex_height = instrument.front_vertex_height,
-                         .greatest_defocus = description.greatest_defocus,
-                         .detector_distance = constants.detector_distance,
-                         .detector_half_sides = {constants.detector_half_width, constants.detector_half_height}},
-                        {.shift = constants.emission_shift, .sine = constants.emission_sine});
+    const auto sides = aim_at_detector(
+        {.illumination = illumination,
+         .imaging = imaging.train,
+         .source = {.radius = radius,
+                    .distance = constants.source_distance,
+                    .monochromatic = description.spectrum.monochromatic()},
+         .front_vertex_height = instrument.front_vertex_height,
+         .greatest_defocus = description.greatest_defocus,
+         .detector_distance = constants.detector_distance,
+         .detector_half_sides = reach * glm::dvec2(constants.detector_half_width, constants.detector_half_height)},
+        {.shift = constants.emission_shift, .sine = constants.emission_sine});
     const bool within_hemisphere = sides && std::abs(constants.emission_shift) * radius + glm::length(*sides) <= 1;
     return within_hemisphere ? sides : std::nullopt;
 }
@@ -275,7 +279,7 @@ Instrument assemble(const InstrumentDescription& description) {
         const DetectorHulls hulls(lit, layout, imaging, measured);
         Instrument instrument = reduce(lit, layout, imaging, measured, hulls, illumination);
         if (lit.single_scatter) {
-            instrument.single_scatter_aim = single_scatter_aim(lit, imaging.imaging, instrument);
+            instrument.single_scatter_aim = single_scatter_aim(lit, imaging.imaging, layout.reach, instrument);
         }
         if (lit.turned) {
             instrument.turned = turn_round(lit, layout, imaging, hulls, illumination, instrument);

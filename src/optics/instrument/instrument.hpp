@@ -77,6 +77,16 @@ struct CoverGlass {
     std::optional<double> distance;
 };
 
+// Deviations of the image from the one that the lenses make (shaders/physics/image_distortion.glsl): those of a real
+// instrument whose prescription is not known, or that are put in to see what they do to heights.
+struct ImageDeviations {
+    double distortion = 0;         // share by which places at field_height are recorded too far from the axis
+    double field_height = 1;       // mm on the specimen
+    double shear = 0;              // rad by which the angle from the rows to the columns exceeds a right one
+    double magnification_rate = 0; // 1/mm: growth of the magnification with the height of the focal plane, relative
+    double greatest_height = 0;    // mm, of the focal plane from z = 0, at which light is to be traced
+};
+
 // The instrument of a configuration, in internal units (mm, W, rad, wavelengths in um).
 struct InstrumentDescription {
     SourceDescription source;
@@ -105,6 +115,7 @@ struct InstrumentDescription {
     ImageSize detector_pixels;
     double fill_factor = 1; // sensitive share of a pixel's area, a square in its middle
     Placement detector_placement;
+    ImageDeviations image;
     std::vector<MeshElement> meshes; // only for the non-sequential mode
     bool directed_emission = true;   // aim the source at directions that can pass the illumination train
     bool single_scatter = false;     // also compute the aim at the detector for light scattered once
@@ -178,8 +189,11 @@ struct Instrument {
     std::uint32_t features = 0;            // physics::FEATURE_*
     std::optional<LightField> light_field; // its record is also among the constants
     FirstOrder first_order;
-    double flux = 1;                     // W, emitted over the hemisphere
-    double fill_factor = 1;              // fill factor of the pixels
+    double flux = 1;               // W, emitted over the hemisphere
+    double fill_factor = 1;        // fill factor of the pixels
+    double magnification_rate = 0; // 1/mm, ImageDeviations::magnification_rate
+    // The farthest place from the axis that ImageDeviations let the detector see, over its corner's; at least 1.
+    double image_reach = 1;
     double splitter_reflectance = 0.5;   // for the illumination; 1 for a ring light, which bypasses it
     double splitter_transmittance = 0.5; // for the imaging
     // The number of surfaces of each train that light meets before the beam splitter's mirror.

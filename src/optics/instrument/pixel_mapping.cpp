@@ -135,8 +135,12 @@ PixelMapping::PixelMapping(const InstrumentDescription& description, const Instr
         at_most(wavelengths, spectral_nodes(spectrum.bins, spectrum.centre(), spectrum.half_width(), wavelengths));
     const ImageSize pixels = description.detector_pixels;
     const glm::dvec2 half_field = 0.5 * first_order.pixel_pitch * glm::dvec2(pixels.columns, pixels.rows);
-    scale_ = std::sqrt(2.0) * half_field;
-    const auto nodes = traced_nodes(imaging, first_order.magnification, nodes_of_spectrum, half_field);
+    const glm::dvec2 seen_half_field = instrument.image_reach * half_field;
+    image_.image_distortion =
+        instrument.constants.image_distortion * first_order.magnification * first_order.magnification;
+    image_.image_shear = instrument.constants.image_shear;
+    scale_ = std::sqrt(2.0) * seen_half_field;
+    const auto nodes = traced_nodes(imaging, first_order.magnification, nodes_of_spectrum, seen_half_field);
 
     // At most half as many terms as nodes, so that the nodes still reveal the polynomials' error.
     int degree = most_degree;
@@ -162,27 +166,47 @@ PixelMapping::PixelMapping(const InstrumentDescription& description, const Instr
     deviation_ = deviation_of(*this, half_field);
     if (imaging.symmetric) { // zero by symmetry; the sums leave rounding
         deviation_.shift = glm::dvec2(0);
-        deviation_.rotation = deviation_.perpendicularity = 0;
+        if (image_.image_shear == 0) {
+            deviation_.rotation = deviation_.perpendicularity = 0;
+        }
     }
     for (const Node& node : nodes) {
-        deviation_.error = std::max(deviation_.error, glm::length(place(node.nominal) - node.nominal - node.aside));
+        deviation_.error =
+            std::max(deviation_.error, glm::length(place_by_lenses(node.nominal) - node.nominal - node.aside));
     }
 }
 
-glm::dvec2 PixelMapping::place(glm::dvec2 nominal) const {
-    const glm::dvec2 at = scaled(nominal);
-    return nominal + glm::dvec2(aside_x_.value(at), aside_y_.value(at));
+glm::dvec2 PixelMapping::arrived(glm::dvec2 nominal, double image_scale) const {
+    physics::f64::Exposure exposure{};
+    exposure.magnification_change = image_scale - 1;
+    return physics::f64::arrival_place(image_, exposure, nominal).place;
 }
 
-glm::dmat2 PixelMapping::rate(glm::dvec2 nominal) const {
-    const glm::dvec2 at = scaled(nominal);
+glm::dvec2 PixelMapping::place_by_lenses(glm::dvec2 arrived) const {
+    const glm::dvec2 at = scaled(arrived);
+    return arrived + glm::dvec2(aside_x_.value(at), aside_y_.value(at));
+}
+
+glm::dvec2 PixelMapping::place(glm::dvec2 nominal, double image_scale) const {
+    return place_by_lenses(arrived(nominal, image_scale));
+}
+
+glm::dmat2 PixelMapping::rate(glm::dvec2 nominal, double image_scale) const {
+    const glm::dvec2 there = arrived(nominal, image_scale);
+    const glm::dvec2 at = scaled(there);
     const glm::dvec2 of_x = aside_x_.gradient(at) / scale_;
     const glm::dvec2 of_y = aside_y_.gradient(at) / scale_;
-    return {1 + of_x.x, of_y.x, of_x.y, 1 + of_y.y};
+    const glm::dmat2 by_lenses(1 + of_x.x, of_y.x, of_x.y, 1 + of_y.y);
+    // The derivative of recorded_place() (shaders/physics/image_distortion.glsl).
+    const double radial = image_.image_distortion;
+    const glm::dmat2 distortion =
+        (1 + radial * glm::dot(there, there)) * glm::dmat2(1) + 2 * radial * glm::outerProduct(there, there);
+    const glm::dmat2 shear(1, 0, image_.image_shear, 1);
+    return by_lenses * glm::inverse(image_scale * shear * distortion);
 }
 
-double PixelMapping::focus(glm::dvec2 nominal) const {
-    return focus_.value(scaled(nominal));
+double PixelMapping::focus(glm::dvec2 nominal, double image_scale) const {
+    return focus_.value(scaled(arrived(nominal, image_scale)));
 }
 
 } // namespace vkfv::optics

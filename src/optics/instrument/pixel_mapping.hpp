@@ -34,17 +34,23 @@ class PixelMapping {
     // Traces the mapping of `instrument`, which assemble() made from `description`.
     PixelMapping(const InstrumentDescription& description, const Instrument& instrument);
 
-    glm::dvec2 place(glm::dvec2 nominal) const;
-    glm::dmat2 rate(glm::dvec2 nominal) const; // derivative of the place by `nominal`; columns belong to x and y
+    // image_scale: magnification over that at z = 0, which ImageDeviations let change with the focal plane.
+    glm::dvec2 place(glm::dvec2 nominal, double image_scale = 1) const;
+    // The derivative of the place by `nominal`; columns belong to x and y.
+    glm::dmat2 rate(glm::dvec2 nominal, double image_scale = 1) const;
     // Height of the place in focus above z = 0, the best focus on the axis of the undisplaced specimen plane.
-    double focus(glm::dvec2 nominal) const;
+    double focus(glm::dvec2 nominal, double image_scale = 1) const;
     const MappingDeviation& deviation() const { return deviation_; }
 
   private:
-    glm::dvec2 scaled(glm::dvec2 nominal) const { return nominal / scale_; } // into the unit disc
+    // Where the light that is recorded at `nominal` arrives by the lenses alone, at the paraxial magnification.
+    glm::dvec2 arrived(glm::dvec2 nominal, double image_scale) const;
+    glm::dvec2 scaled(glm::dvec2 arrived) const { return arrived / scale_; } // into the unit disc
+    glm::dvec2 place_by_lenses(glm::dvec2 arrived) const;
 
+    physics::f64::Instrument image_{}; // of which ImageDeviations alone are used, in the object
     glm::dvec2 scale_ = glm::dvec2(1);
-    // Polynomials in scaled() of place - nominal, and of focus().
+    // Polynomials in scaled() of place_by_lenses() - arrived, and of the focus there.
     PlanePolynomial aside_x_;
     PlanePolynomial aside_y_;
     PlanePolynomial focus_;

@@ -12,6 +12,7 @@ physics::f64::Exposure make_exposure(const optics::Instrument& instrument, const
     exposure.focal_height = position.height;
     exposure.beside_x = position.beside.x;
     exposure.beside_y = position.beside.y;
+    exposure.magnification_change = instrument.magnification_rate * position.height;
     return exposure;
 }
 
