@@ -204,7 +204,8 @@ bool is_profile(const TableText& table, const TableHeader& header) {
     return !sized && ratio < regular;
 }
 
-// Warns of a first column, or line, that ascends evenly while the last does not: of positions beside a map.
+// Warns of a first column, or line, that ascends evenly while the last does not: of positions beside a map, which may
+// begin below a corner of any value.
 void warn_of_positions(const std::filesystem::path& path, const TableText& table, SurfaceFile& result) {
     constexpr std::size_t least_points = 8;
     constexpr double even = 1.01; // ratio of steps between positions with three digits or more
@@ -216,8 +217,9 @@ void warn_of_positions(const std::filesystem::path& path, const TableText& table
                             "the heights, export them alone",
                             path.string(), what));
     };
-    warn("column", {.first = 0, .step = table.columns, .count = table.rows}, table.columns - 1);
-    warn("line", {.first = 0, .step = 1, .count = table.columns}, (table.rows - 1) * table.columns);
+    const std::size_t columns = table.columns, rows = table.rows;
+    warn("column", {.first = columns, .step = columns, .count = rows - 1}, 2 * columns - 1);
+    warn("line", {.first = 1, .step = 1, .count = columns - 1}, (rows - 1) * columns + 1);
 }
 
 void set_pitch(const std::filesystem::path& path, const TableHeader& header, const ImageScale& scale,

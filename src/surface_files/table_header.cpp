@@ -261,7 +261,9 @@ TableHeader table_header(std::span<const std::string_view> lines, std::size_t co
                 return take_names(names, cells_of(names, between), count);
             });
         };
-        if (separated(columns) || take_names(names, cells_with_brackets(names), columns) || separated(one))
+        // A line such as "Height: 10 mm" states an extent, and is no name of heights in mm.
+        if (separated(columns) || take_names(names, cells_with_brackets(names), columns) ||
+            (!statement_of(names).length() && separated(one)))
             return header;
     }
     return header;

@@ -223,6 +223,11 @@ TEST(TableStatements, AProfileIsNoMap) {
     // Without names only a warning is due, and none for a map whose columns all ascend.
     const std::string unnamed = several.substr(several.find('\n') + 1);
     EXPECT_THAT(table(unnamed, given).warnings, testing::ElementsAre(HasSubstr("first column ascends evenly")));
+    std::string axes = "0,0,1,2,3,4,5,6,7,8,9\n";
+    for (int k = 0; k < 9; ++k)
+        axes += fmt::format("{},1,3,2,3,1,4,2,3,1,2\n", 0.5 * k);
+    EXPECT_THAT(table(axes, given).warnings,
+                testing::ElementsAre(HasSubstr("column ascends"), HasSubstr("line ascends")));
     std::string ramp;
     for (int k = 0; k < 20; ++k)
         ramp += fmt::format("{},{},{},{}\n", k, k + 1, k + 2, k + 3);
@@ -233,6 +238,10 @@ TEST(TableStatements, AProfileIsNoMap) {
                              "X Size\t4\nY Size\t3\n", "ncols 4\nnrows 3\ncellsize 2\n",
                              "# x-length = 2000\n# y-length = 1500\n# x-unit = nm\n# y-unit = nm\n"})
         EXPECT_EQ(table(size + rows, given).map.columns(), 4) << size;
+    // An extent is not the unit of heights.
+    expect_refusal([&] { (void)table("# Width: 10 mm\n# Height: 9 mm\n" + rows + rows); }, "unit_um");
+    EXPECT_EQ(table("# Width: 10 mm\n# Height: 9 mm\n" + rows + rows, {.pitch = {}, .unit = um}).map.height(0, 0),
+              9 * um);
     // The count of points above their list is no point.
     EXPECT_EQ(table("4\n0 0 1\n1 0 2\n0 1 3\n1 1 4\n", given).map.rows(), 2);
     expect_refusal([] { (void)table("5\n0 0 1\n1 0 2\n0 1 3\n1 1 4\n", given); }, "columns");
