@@ -9,8 +9,11 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace vkfv::app {
@@ -60,8 +63,9 @@ namespace {
 
 // The descriptor file of the EMVA 1288 reference implementation, which lists the images in sets of one exposure time
 // (ns) and one number of photons a pixel. That implementation takes a set of two images for a pair, and refuses a
-// second pair or a second stack with the same numbers. Images about the largest variance repeat such numbers, and only
-// the first set of them is listed.
+// second pair or a second stack with the same numbers, of which only the first set is listed. It finds saturation where
+// the variance no longer rises from the last set to the one before, which between close sets is chance: these are not
+// listed.
 class DescriptorFile {
   public:
     // bits: depth of a grey value. columns, rows: pixels of an image. averaged: how many images a stack averages.
@@ -71,6 +75,8 @@ class DescriptorFile {
 
     // Adds an image. The images of a set must follow each other. file: relative to the descriptor's folder.
     void add(const camera::TakenImage& what, const std::string& file) {
+        if (std::ranges::find(close_steps, what.series) != close_steps.end())
+            return;
         if (what.file.ends_with("_a") || what.series != series_) {
             series_ = what.series;
             constexpr double ns_per_s = 1e9;
@@ -86,6 +92,8 @@ class DescriptorFile {
     const std::string& text() const { return text_; }
 
   private:
+    static constexpr std::array<std::string_view, 3> close_steps = {"search", "middle", "peak"};
+
     bool stacks_are_pairs_;
     std::string text_;
     std::string series_;                          // series of the last image

@@ -249,18 +249,27 @@ SurfaceFile parse_gwy(std::string_view bytes, const std::filesystem::path& path)
         if (name.starts_with('/') && name.ends_with("/data"))
             if (const auto number = number_in<int>(std::string_view(name).substr(1, name.size() - 6)))
                 channels.emplace(*number, name);
+    std::optional<SurfaceFile> first;
+    std::string title;
+    int with_heights = 0;
     for (const auto& [number, name] : channels) {
         const auto field = container.object(name, "GwyDataField");
         const auto unit_xy = field ? field->unit("si_unit_xy") : std::nullopt;
         const auto unit_z = field ? field->unit("si_unit_z") : std::nullopt;
-        if (!unit_xy || !unit_z)
+        if (!unit_xy || !unit_z || ++with_heights > 1)
             continue;
+        title = plain_line(container.text((name + "/title").c_str()));
         const auto mask = container.object(fmt::format("/{}/mask", number), "GwyDataField");
         SurfaceFile result{.map = map_of(file, *field, mask, *unit_xy, *unit_z), .provenance = {}};
         if (const auto meta = container.object(fmt::format("/{}/meta", number), "GwyContainer"))
             result.provenance = parse_provenance(meta->text(gwy_provenance_key));
-        return result;
+        first = std::move(result);
     }
+    if (first && with_heights > 1)
+        first->warnings.push_back(fmt::format("{}: the first of its {} channels of heights is read, \"{}\"",
+                                              path.string(), with_heights, title));
+    if (first)
+        return *std::move(first);
     file.fail({}, "channels", fmt::format("{} without heights", channels.size()),
               "a channel whose values and axes are lengths", "Save a channel of heights.");
 }

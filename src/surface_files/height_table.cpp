@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <span>
 #include <sstream>
@@ -122,29 +123,103 @@ HeightMap matrix_of(const TableText& table) {
     return map;
 }
 
-// True for a profile: a position and a height in each line, or heights alone; also in two or three long lines, or one.
-// The first column of a height map, or its first line, rarely ascends evenly, as positions do.
-bool is_profile(const TableText& table) {
+// A line or a column of a table, as its numbers in sequence.
+struct Sequence {
+    std::size_t first = 0, step = 1, count = 0; // in the table's values
+};
+
+// The ratio of the longest to the shortest step of a sequence that rises, or falls, from number to number; infinite for
+// another.
+double unevenness(const TableText& table, const Sequence& sequence) {
+    double shortest = std::numeric_limits<double>::infinity(), longest = -shortest;
+    for (std::size_t k = 1; k < sequence.count; ++k) {
+        const double* number = &table.values[sequence.first + k * sequence.step];
+        const double step = *number - *(number - sequence.step);
+        if (!std::isfinite(step))
+            return std::numeric_limits<double>::infinity();
+        shortest = std::min(shortest, step);
+        longest = std::max(longest, step);
+    }
+    return shortest > 0  ? longest / shortest
+           : longest < 0 ? shortest / longest
+                         : std::numeric_limits<double>::infinity();
+}
+
+// How many columns the table has without those at its end that are empty in every line.
+std::size_t filled_columns(const TableText& table) {
+    std::size_t filled = 0;
+    for (std::size_t k = 0; k < table.values.size(); ++k)
+        if (!std::isnan(table.values[k]))
+            filled = std::max(filled, k % table.columns + 1);
+    return filled;
+}
+
+// True for the name of a column of positions, with or without a unit behind it: "X_(microns)", "Lateral um".
+bool names_positions(std::string_view name) {
+    constexpr std::array<std::string_view, 7> words = {"x",      "position", "distance", "lateral",
+                                                       "length", "pos",      "abscissa"};
+    std::string word;
+    for (const char c : name) {
+        const auto letter = static_cast<unsigned char>(c);
+        if (std::isalnum(letter) == 0)
+            break;
+        word += static_cast<char>(std::tolower(letter));
+    }
+    return std::ranges::find(words, word) != words.end();
+}
+
+// True if the header says how many points the map has along both axes.
+bool states_points(const TableHeader& header, const TableText& table) {
+    const auto is = [](const std::optional<double>& count, std::size_t points) {
+        return count && *count == static_cast<double>(points);
+    };
+    return (is(header.points_x, table.columns) && is(header.points_y, table.rows)) ||
+           (is(header.points_x, table.rows) && is(header.points_y, table.columns));
+}
+
+// True for a profile: a position and a height in each line, or heights alone; also in two or three long lines, or one;
+// or, by the name of their column, positions before several columns of heights. The first column of a height map, or
+// its first line, rarely ascends evenly, as positions do; a header that states the map's size settles it.
+bool is_profile(const TableText& table, const TableHeader& header) {
     constexpr std::size_t least_points = 4, most_values = 3;
-    const bool lies = table.rows <= most_values && table.columns > table.rows; // a point a column, not a line
-    const std::size_t points = lies ? table.columns : table.rows, values = lies ? table.rows : table.columns;
+    const std::size_t columns = filled_columns(table);
+    if (columns == 0 || (columns > 1 && table.rows > 1 && states_points(header, table)))
+        return false;
+    const Sequence first_column{.first = 0, .step = table.columns, .count = table.rows};
+    if (columns > 1 && table.rows >= least_points && !header.cells_above.empty() &&
+        names_positions(header.cells_above.front()) && !names_positions(header.cells_above.back()) &&
+        std::isfinite(unevenness(table, first_column)))
+        return true;
+    const bool lies = table.rows <= most_values && columns > table.rows; // a point a column, not a line
+    const std::size_t points = lies ? columns : table.rows, values = lies ? table.rows : columns;
     if (values > most_values || points < least_points)
         return false;
     if (values == 1)
         return true;
-    const auto position = [&](std::size_t point) { return table.values[lies ? point : point * table.columns]; };
-    double shortest = std::numeric_limits<double>::infinity(), longest = -shortest;
-    for (std::size_t point = 1; point < points; ++point) {
-        const double step = position(point) - position(point - 1);
-        if (!std::isfinite(step))
-            return false;
-        shortest = std::min(shortest, step);
-        longest = std::max(longest, step);
-    }
+    const double ratio = unevenness(table, lies ? Sequence{.first = 0, .step = 1, .count = columns} : first_column);
+    if (values == 2)
+        return std::isfinite(ratio);
     constexpr double regular = 1.5; // ratio of steps between rounded positions
-    const bool ascending = shortest > 0, descending = longest < 0;
-    const double ratio = ascending ? longest / shortest : shortest / longest;
-    return (ascending || descending) && (values == 2 || ratio < regular);
+    const bool sized = (header.width && header.height) || (header.x_length && header.y_length);
+    return !sized && ratio < regular;
+}
+
+// Warns of a first column, or line, that ascends evenly while the last does not: of positions beside a map, which may
+// begin below a corner of any value.
+void warn_of_positions(const std::filesystem::path& path, const TableText& table, SurfaceFile& result) {
+    constexpr std::size_t least_points = 8;
+    constexpr double even = 1.01; // ratio of steps between positions with three digits or more
+    const auto warn = [&](const char* what, const Sequence& first, std::size_t last) {
+        if (first.count >= least_points && unevenness(table, first) < even &&
+            !std::isfinite(unevenness(table, {.first = last, .step = first.step, .count = first.count})))
+            result.warnings.push_back(
+                fmt::format("{}: its first {} ascends evenly, as positions do. If it is no part of "
+                            "the heights, export them alone",
+                            path.string(), what));
+    };
+    const std::size_t columns = table.columns, rows = table.rows;
+    warn("column", {.first = columns, .step = columns, .count = rows - 1}, 2 * columns - 1);
+    warn("line", {.first = 1, .step = 1, .count = columns - 1}, (rows - 1) * columns + 1);
 }
 
 void set_pitch(const std::filesystem::path& path, const TableHeader& header, const ImageScale& scale,
@@ -205,7 +280,7 @@ SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::pa
     if (named && !points)
         file.fail({}, "x, y", fmt::format("{} lines of {} numbers", table.rows, table.columns),
                   "x, y and z of points of a regular grid", "Export the surface on a grid.");
-    if (!own && !points && is_profile(table))
+    if (!own && !points && is_profile(table, header))
         file.fail(
             {}, "", fmt::format("a profile: {} lines of {} numbers", table.rows, table.columns), "a map of heights",
             "Profiles are not evaluated; export the whole surface. If it is a map of so few columns, exchange its "
@@ -241,6 +316,8 @@ SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::pa
             file.fail({}, "x, y", "lengths that overflow", "finite ones");
     } else {
         result.map = matrix_of(table);
+        if (!own)
+            warn_of_positions(path, table, result);
         set_pitch(path, header, scale, result);
     }
     file.check_spacing(result.map.pitch_x, "pitch along x");

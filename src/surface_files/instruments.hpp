@@ -23,7 +23,7 @@ SurfaceFile parse_opd(std::string_view bytes, const std::filesystem::path& file)
 // MetroPro's DAT, Zygo's interferometers; big-endian (facts: Zygo's MetroPro Reference Guide, Gwyddion's metropro
 // module).
 bool looks_like_metropro(std::string_view bytes);
-// Reads the phase data as heights.
+// Reads the phase data of formats 1 to 3 as heights.
 SurfaceFile parse_metropro(std::string_view bytes, const std::filesystem::path& file);
 
 // The text files of MetroPro and Mx: "Zygo ASCII Data File" with phases as whole numbers, and "Zygo XYZ Data File" with

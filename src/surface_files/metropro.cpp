@@ -11,7 +11,8 @@ namespace vkfv::surface {
 namespace {
 
 // Offsets of the header's fields, in bytes.
-constexpr std::string_view metropro_magic = "\x88\x1b\x03\x6f";
+constexpr std::string_view metropro_magic = "\x88\x1b\x03";
+constexpr char first_format = 0x6f, last_format = 0x71; // the fourth byte: format 1, 2 or 3
 constexpr std::size_t format_at = 4, header_size_at = 6, intensity_bytes_at = 60, columns_at = 68, rows_at = 70,
                       time_at = 76, comment_at = 80, comment_length = 82, scale_at = 164, wavelength_at = 168,
                       obliquity_at = 176, pitch_at = 184, resolution_at = 218, inverted_at = 232, serial_at = 242,
@@ -32,7 +33,8 @@ Value big_endian(const ByteReader& file, std::uint64_t offset, const char* what)
 } // namespace
 
 bool looks_like_metropro(std::string_view bytes) {
-    return bytes.starts_with(metropro_magic);
+    return bytes.size() > metropro_magic.size() && bytes.starts_with(metropro_magic) &&
+           bytes[metropro_magic.size()] >= first_format && bytes[metropro_magic.size()] <= last_format;
 }
 
 SurfaceFile parse_metropro(std::string_view bytes, const std::filesystem::path& path) {

@@ -12,7 +12,7 @@ namespace {
 
 // Offsets of the header's fields, in bytes; the header begins with a date as C's ctime() writes it.
 constexpr std::size_t date_length = 128, comment_at = 132, comment_length = 256, pitch_x_at = 404, pitch_y_at = 408,
-                      type_at = 428, rows_at = 500, columns_at = 504, data_at = 508;
+                      type_at = 428, layers_at = 489, rows_at = 500, columns_at = 504, data_at = 508;
 constexpr std::uint32_t image_type = 0, topography_type = 3;
 constexpr float not_measured = 1000001;
 constexpr std::array<std::string_view, 7> days = {"Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"};
@@ -60,6 +60,8 @@ SurfaceFile parse_plu(std::string_view bytes, const std::filesystem::path& path)
             result.map.height(column, row) = um == not_measured ? std::numeric_limits<double>::quiet_NaN()
                                                                 : height_from(static_cast<double>(um), mm_per_um);
         }
+    if (const int layers = file.at<std::uint8_t>(layers_at, "layers"); layers > 1)
+        result.warnings.push_back(fmt::format("{}: the first of its {} layers is read", path.string(), layers));
     result.provenance.manufacturer = "Sensofar";
     if (const auto date = date_in(bytes))
         result.provenance.date = known_date(date->text());

@@ -7,18 +7,24 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <type_traits>
 
 namespace vkfv::surface {
 namespace {
 
 constexpr std::string_view binary_magic = "bISO-1.0", text_magic = "aISO-1.0";
-// Before ISO 25178-71 the same header had the magic words of BCR's report EUR 15178 and of NPL's softgauges.
-constexpr std::array binary_magics = {binary_magic, std::string_view("bBCR-1.0")};
-constexpr std::array text_magics = {text_magic, std::string_view("aBCR-1.0"), std::string_view("aBCR-0.0"),
-                                    std::string_view("aNPL-1.0")};
+// Version 2.0 of ISO 25178-71:2026 counts points and profiles in 32 bits; facts: the Python package sdfio, whose
+// samples MountainsMap 11 wrote. Before ISO 25178-71 the same header had the magic words of BCR's report EUR 15178 and
+// of NPL's softgauges.
+constexpr std::string_view wide_magic = "bISO-2.0";
+constexpr std::array binary_magics = {binary_magic, wide_magic, std::string_view("bBCR-1.0")};
+constexpr std::array text_magics = {text_magic, std::string_view("aISO-2.0"), std::string_view("aBCR-1.0"),
+                                    std::string_view("aBCR-0.0"), std::string_view("aNPL-1.0")};
 constexpr std::size_t manufacturer_at = 8, manufacturer_length = 10, creation_at = 18, date_length = 12,
                       columns_at = 42, rows_at = 44, x_scale_at = 46, y_scale_at = 54, z_scale_at = 62,
                       compression_at = 78, type_at = 79, check_at = 80, header_size = 81;
+constexpr std::size_t wide_rows_at = 46,
+                      wider_by = 4; // in version 2.0, where all fields behind are farther off by this
 constexpr int double_type = 7;
 constexpr std::string_view x0_key = "x0_mm=", y0_key = "y0_mm=";
 
@@ -52,39 +58,48 @@ void check_scale(const ByteReader& file, double scale, std::optional<std::uint64
         file.fail(offset, "Zscale", fmt::format("{}", scale), "a finite number that is not 0");
 }
 
+// True for a type with a value that marks points that were not measured. Types of one byte had none before version 2.0.
 template <class Stored>
-void read_sdf_heights(std::string_view points, double scale, Grid<double>& heights) {
+constexpr bool has_mark(bool wide) {
+    return sizeof(Stored) > 1 || (wide && std::is_signed_v<Stored>);
+}
+
+template <class Stored>
+void read_sdf_heights(std::string_view points, double scale, bool wide, Grid<double>& heights) {
     std::size_t index = 0;
     for (int row = heights.rows - 1; row >= 0; --row)
         for (int column = 0; column < heights.columns; ++column, ++index) {
             using Limits = std::numeric_limits<Stored>;
             const Stored value = element<Stored>(points, index);
-            // Integers of several bytes have a mark for points that were not measured: the lowest value of a signed
-            // type, the largest of an unsigned one.
-            const bool gap = Limits::is_integer && sizeof(Stored) > 1 &&
-                             value == (Limits::is_signed ? Limits::min() : Limits::max());
+            // The mark is the lowest value of a signed type, also of a floating one, and the largest of an unsigned
+            // one.
+            const bool gap = has_mark<Stored>(wide) && value == (Limits::is_signed ? Limits::lowest() : Limits::max());
             heights(column, row) =
                 gap ? std::numeric_limits<double>::quiet_NaN() : height_from_metres(static_cast<double>(value) * scale);
         }
 }
 
 SurfaceFile parse_binary(const ByteReader& file) {
-    (void)file.bytes(0, header_size, "header");
-    const auto columns = file.at<std::uint16_t>(columns_at, "points"),
-               rows = file.at<std::uint16_t>(rows_at, "profiles");
+    const bool wide = file.bytes(0, wide_magic.size(), "header") == wide_magic;
+    const std::size_t shift = wide ? wider_by : 0;
+    (void)file.bytes(0, header_size + shift, "header");
+    const std::uint64_t columns = wide ? file.at<std::uint32_t>(columns_at, "points")
+                                       : file.at<std::uint16_t>(columns_at, "points"),
+                        rows = wide ? file.at<std::uint32_t>(wide_rows_at, "profiles")
+                                    : file.at<std::uint16_t>(rows_at, "profiles");
     file.check_size(columns, rows, columns_at);
-    const double x_scale = mm_from_metres(file.at<double>(x_scale_at, "Xscale"));
-    const double y_scale = mm_from_metres(file.at<double>(y_scale_at, "Yscale"));
-    const double z_scale = file.at<double>(z_scale_at, "Zscale");
-    file.check_spacing(x_scale, "Xscale", x_scale_at);
-    file.check_spacing(y_scale, "Yscale", y_scale_at);
-    check_scale(file, z_scale, z_scale_at);
-    const int type = file.at<std::uint8_t>(type_at, "data type");
-    check_type(file, file.at<std::uint8_t>(compression_at, "compression"), type,
-               file.at<std::uint8_t>(check_at, "checksum"), compression_at);
+    const double x_scale = mm_from_metres(file.at<double>(x_scale_at + shift, "Xscale"));
+    const double y_scale = mm_from_metres(file.at<double>(y_scale_at + shift, "Yscale"));
+    const double z_scale = file.at<double>(z_scale_at + shift, "Zscale");
+    file.check_spacing(x_scale, "Xscale", x_scale_at + shift);
+    file.check_spacing(y_scale, "Yscale", y_scale_at + shift);
+    check_scale(file, z_scale, z_scale_at + shift);
+    const int type = file.at<std::uint8_t>(type_at + shift, "data type");
+    check_type(file, file.at<std::uint8_t>(compression_at + shift, "compression"), type,
+               file.at<std::uint8_t>(check_at + shift, "checksum"), compression_at + shift);
     struct StoredType {
         std::uint64_t bytes;
-        void (*read)(std::string_view, double, Grid<double>&);
+        void (*read)(std::string_view, double, bool, Grid<double>&);
     };
     constexpr std::array<StoredType, double_type + 1> types = {{{1, read_sdf_heights<std::uint8_t>},
                                                                 {2, read_sdf_heights<std::uint16_t>},
@@ -95,14 +110,16 @@ SurfaceFile parse_binary(const ByteReader& file) {
                                                                 {4, read_sdf_heights<std::int32_t>},
                                                                 {8, read_sdf_heights<double>}}};
     const StoredType& stored = types[static_cast<std::size_t>(type)];
-    const auto points = file.bytes(header_size, std::uint64_t{columns} * rows * stored.bytes, "points");
+    const auto points = file.bytes(header_size + shift, columns * rows * stored.bytes, "points");
 
     SurfaceFile result;
     result.map.pitch_x = x_scale;
     result.map.pitch_y = y_scale;
-    result.map.height = Grid<double>(columns, rows);
-    stored.read(points, z_scale, result.map.height);
-    result.provenance.manufacturer = plain_line(file.bytes(manufacturer_at, manufacturer_length, "manufacturer"));
+    result.map.height = Grid<double>(static_cast<int>(columns), static_cast<int>(rows));
+    stored.read(points, z_scale, wide, result.map.height);
+    // MountainsMap ends the name with a NUL, behind which anything stands, instead of filling it with blanks.
+    const auto manufacturer = file.bytes(manufacturer_at, manufacturer_length, "manufacturer");
+    result.provenance.manufacturer = plain_line(manufacturer.substr(0, manufacturer.find('\0')));
     result.provenance.date = date_from(file.bytes(creation_at, date_length, "date"));
     return result;
 }

@@ -184,6 +184,9 @@ SurfaceFile parse_sur(std::string_view bytes, const std::filesystem::path& path)
                                                                                    result.map.height);
     invert(file.at<std::int16_t>(inversion_at, "inversion"), result.map.height);
 
+    if (const auto objects = file.at<std::int16_t>(object_count_at, "objects"); objects > 1)
+        result.warnings.push_back(fmt::format("{}: the first of its {} surfaces is read", path.string(), objects));
+
     result.provenance = parse_provenance(comment);
     const auto known = [&](std::string& member, std::size_t offset) {
         if (member.empty())

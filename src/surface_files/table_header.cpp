@@ -135,8 +135,13 @@ void take(const Statement& statement, TableHeader& header) {
     } else if (is_one_of(key, {"cellsize", "cell size"})) {
         first(header.cell_x, statement.number());
         first(header.cell_y, statement.number());
-    } else if (key == "ncols" || key == "nrows")
+    } else if (key == "ncols" || key == "nrows") {
         header.is_grid = true;
+        first(key == "ncols" ? header.points_x : header.points_y, statement.number());
+    } else if (is_one_of(key, {"x pixels", "x size", "x points", "xres", "columns"}))
+        first(header.points_x, statement.number());
+    else if (is_one_of(key, {"y pixels", "y size", "y points", "yres", "rows", "lines"}))
+        first(header.points_y, statement.number());
     else if (is_one_of(key, {"width", "breite"}))
         first(header.width, statement.length());
     else if (is_one_of(key, {"height", "h\xC3\xB6he"}))
@@ -248,13 +253,17 @@ TableHeader table_header(std::span<const std::string_view> lines, std::size_t co
     };
     for (auto line = lines.rbegin(); line != lines.rend() && !header.column_names; ++line) {
         const std::string_view names = bare(line->substr(std::min(line->find_first_not_of("# \t"), line->size())));
+        if (const auto cells = cells_of(names, separator); header.cells_above.empty() && cells.size() == columns)
+            header.cells_above.assign(cells.begin(), cells.end());
         constexpr std::size_t one = 1;
         const auto separated = [&](std::size_t count) {
             return std::ranges::any_of(std::array{separator, ';', '\t', ','}, [&](char between) {
                 return take_names(names, cells_of(names, between), count);
             });
         };
-        if (separated(columns) || take_names(names, cells_with_brackets(names), columns) || separated(one))
+        // A line such as "Height: 10 mm" states an extent, and is no name of heights in mm.
+        if (separated(columns) || take_names(names, cells_with_brackets(names), columns) ||
+            (!statement_of(names).length() && separated(one)))
             return header;
     }
     return header;

@@ -27,6 +27,8 @@ struct TableHeader {
     std::array<std::optional<double>, 3> column_units{}; // for the first three columns, from the line of their names
     std::array<bool, 3> unknown_units{}; // true for names with a unit in square brackets that is no length: "x [px]"
     std::optional<std::string> column_names{}; // the line of the columns' names
+    std::optional<double> points_x, points_y;  // how many points lie along x and y
+    std::vector<std::string> cells_above{};    // the lowest line of the header with as many cells as the table's lines
 };
 
 // The cells of a line, without separators and quotes. separator: a blank stands for any number of blanks and tabs; a

@@ -112,6 +112,22 @@ bool is_data(std::string_view line, const Style& style) {
            std::ranges::all_of(cells, [&](std::string_view cell) { return is_number(cell) || is_gap(cell); });
 }
 
+// True for a line that holds alone how many lines follow, as some programs begin their lists of points.
+bool is_count_of(std::string_view line, std::string_view rest) {
+    const auto count = number_in<std::uint64_t>(line);
+    if (!count || *count < 2)
+        return false;
+    std::uint64_t lines = 0;
+    bool more_numbers = true;
+    while (!rest.empty() && lines <= *count) {
+        const std::string_view next = bare(rest.substr(0, rest.find('\n')));
+        rest.remove_prefix(std::min(rest.find('\n'), rest.size() - 1) + 1);
+        lines += next.empty() || is_remark(next) ? 0 : 1;
+        more_numbers = more_numbers && (next.empty() || next.find_first_of(" \t,;") != std::string_view::npos);
+    }
+    return lines == *count && more_numbers;
+}
+
 // Appends a row, whose columns are as many as those of the rows before. An empty cell at the end of a line looks like a
 // separator that closes the line: where the lines differ by it, the longer ones tell.
 class Rows {
@@ -179,7 +195,8 @@ TableText parse_table_text(std::string_view text, const std::filesystem::path& p
         if (content.empty())
             continue;
         const Style own = style.value_or(style_of(content));
-        if (is_remark(content) || (!style && !is_data(content, own))) {
+        if (is_remark(content) ||
+            (!style && (!is_data(content, own) || is_count_of(content, text.substr(std::min(at, text.size())))))) {
             table.header.push_back(content);
             continue;
         }

@@ -6,6 +6,7 @@
 #include "surface_files/height_table.hpp"
 #include "surface_files/instruments.hpp"
 #include "surface_files/npy.hpp"
+#include "surface_files/sur.hpp"
 
 #include "core/messages/error.hpp"
 
@@ -292,6 +293,40 @@ TEST(SurfaceFormats, FilesOfInstruments) {
                 EXPECT_THROW((void)other.parse(bytes, name), InputError) << name;
             }
     }
+}
+
+// The first bytes tell the format, 1 to 3, of MetroPro's header, whose length differs.
+TEST(SurfaceFormats, MetroproOfEveryFormat) {
+    const std::string first = instrument_file("dat");
+    const auto expected = parse_metropro(first, "a.dat").map.height.values;
+    for (const int format : {2, 3}) {
+        std::string bytes = first;
+        bytes[3] = static_cast<char>(0x6e + format);
+        bytes[5] = static_cast<char>(format);
+        if (format == 3) {
+            bytes.insert(834, 4096 - 834, '\0');
+            bytes[8] = '\x10', bytes[9] = '\0';
+        }
+        ASSERT_TRUE(looks_like_metropro(bytes)) << format;
+        EXPECT_THAT(parse_metropro(bytes, "a.dat").map.height.values,
+                    testing::Pointwise(testing::NanSensitiveDoubleEq(), expected))
+            << format;
+    }
+}
+
+// A file of several surfaces says which one is read.
+TEST(SurfaceFormats, TheFirstOfSeveralIsNamed) {
+    std::string plu = instrument_file("plu"), sur = sur_bytes(wave(), {});
+    EXPECT_TRUE(parse_plu(plu, "a.plu").warnings.empty());
+    EXPECT_TRUE(parse_sur(sur, "a.sur").warnings.empty());
+    plu[489] = '\2';
+    sur[14] = '\3';
+    const std::vector<GwyChannel> two = {{"Contrast", "", wave()}, {"Height", "m", wave()}, {"More", "m", wave()}};
+    EXPECT_TRUE(parse_gwy(gwy_bytes({two[0], two[1]}, {}), "a.gwy").warnings.empty());
+    EXPECT_THAT(parse_plu(plu, "a.plu").warnings, testing::ElementsAre(testing::HasSubstr("first of its 2 layers")));
+    EXPECT_THAT(parse_sur(sur, "a.sur").warnings, testing::ElementsAre(testing::HasSubstr("first of its 3 surfaces")));
+    EXPECT_THAT(parse_gwy(gwy_bytes(two, {}), "a.gwy").warnings,
+                testing::ElementsAre(testing::HasSubstr("first of its 2 channels of heights is read, \"Height\"")));
 }
 
 TEST(SurfaceFormats, TextOfZygo) {

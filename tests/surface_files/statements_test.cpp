@@ -48,6 +48,16 @@ auto near(double value) {
 
 constexpr ImageScale given = {.pitch = 2 * um, .unit = um};
 
+template <class Parse>
+void expect_refusal(Parse parse, const std::string& part) {
+    try {
+        parse();
+        ADD_FAILURE() << "accepted: " << part;
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr(part));
+    }
+}
+
 TEST(TableStatements, MarksOfPointsThatWereNotMeasured) {
     for (const char* mark : {"1.70141e38", "1.701410009187827989e+38", "-1.70141E+38", "3.4028235e38", "1e38", "NaN"})
         EXPECT_THAT(heights_of(table(std::string("1,2\n") + mark + ",4\n", given)),
@@ -199,6 +209,42 @@ TEST(TableStatements, AProfileIsNoMap) {
             EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("a profile"), HasSubstr("a map of heights")));
         }
     }
+    // Profilometers close their lines by empty cells, write the scan's parameters above, or several heights a line.
+    std::string closed = "Scan Parameters\nLength,1500.0 um\n\nScan Data\nLateral um,Raw Micrometer,\n";
+    std::string several = "X_(microns),y1,y2,y3,y4\n", counted = "\xC2\xB5m \xC2\xB5m\n50\n";
+    for (int k = 0; k < 50; ++k) {
+        const std::string x = fmt::format("{:.1f}", 0.156 * k), z = std::to_string(std::sin(0.3 * k));
+        closed += x + "," + z + ",,\n";
+        several += fmt::format("{},{},{},{},{}\n", 0.0386 * (k + 1), z, z, z, z);
+        counted += fmt::format("   {:.7e},   {}\n", 1.3 * k, z);
+    }
+    for (const std::string& text : {closed, several, counted})
+        expect_refusal([&] { (void)table(text, given); }, "a profile");
+    // Without names only a warning is due, and none for a map whose columns all ascend.
+    const std::string unnamed = several.substr(several.find('\n') + 1);
+    EXPECT_THAT(table(unnamed, given).warnings, testing::ElementsAre(HasSubstr("first column ascends evenly")));
+    std::string axes = "0,0,1,2,3,4,5,6,7,8,9\n";
+    for (int k = 0; k < 9; ++k)
+        axes += fmt::format("{},1,3,2,3,1,4,2,3,1,2\n", 0.5 * k);
+    EXPECT_THAT(table(axes, given).warnings,
+                testing::ElementsAre(HasSubstr("column ascends"), HasSubstr("line ascends")));
+    std::string ramp;
+    for (int k = 0; k < 20; ++k)
+        ramp += fmt::format("{},{},{},{}\n", k, k + 1, k + 2, k + 3);
+    EXPECT_TRUE(table(ramp, given).warnings.empty());
+    // A header that states the size of a map tells that it is one, however its numbers ascend.
+    const std::string rows = "1 2 3 4\n5 6 7 8\n9 10 11 13\n";
+    for (const char* size : {"# Width: 10 \xC2\xB5m\n# Height: 9 \xC2\xB5m\n", "# x-pixels = 4\n# y-pixels = 3\n",
+                             "X Size\t4\nY Size\t3\n", "ncols 4\nnrows 3\ncellsize 2\n",
+                             "# x-length = 2000\n# y-length = 1500\n# x-unit = nm\n# y-unit = nm\n"})
+        EXPECT_EQ(table(size + rows, given).map.columns(), 4) << size;
+    // An extent is not the unit of heights.
+    expect_refusal([&] { (void)table("# Width: 10 mm\n# Height: 9 mm\n" + rows + rows); }, "unit_um");
+    EXPECT_EQ(table("# Width: 10 mm\n# Height: 9 mm\n" + rows + rows, {.pitch = {}, .unit = um}).map.height(0, 0),
+              9 * um);
+    // The count of points above their list is no point.
+    EXPECT_EQ(table("4\n0 0 1\n1 0 2\n0 1 3\n1 1 4\n", given).map.rows(), 2);
+    expect_refusal([] { (void)table("5\n0 0 1\n1 0 2\n0 1 3\n1 1 4\n", given); }, "columns");
     // A map of few columns is a map, not a list of points.
     EXPECT_EQ(table("3,1\n1,2\n2,2\n5,4\n", given).map.columns(), 2);
     EXPECT_EQ(table("1,2,3\n4,5,6\n", given).map.columns(), 3);

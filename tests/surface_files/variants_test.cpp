@@ -276,10 +276,12 @@ TEST(SurfaceVariants, SdfOfEveryType) {
     expect_sdf<std::uint16_t>(1, 65535);
     expect_sdf<std::uint32_t>(2, 4294967295);
     expect_sdf<float>(3, std::numeric_limits<float>::quiet_NaN());
+    expect_sdf<float>(3, std::numeric_limits<float>::lowest());
     expect_sdf<std::int8_t>(4, {});
     expect_sdf<std::int16_t>(5, -32768);
     expect_sdf<std::int32_t>(6, std::numeric_limits<std::int32_t>::min());
     expect_sdf<double>(7, std::numeric_limits<double>::quiet_NaN());
+    expect_sdf<double>(7, std::numeric_limits<double>::lowest());
     expect_told([] { (void)parse_sdf(sdf_of<double>(8, std::vector<double>(6)), "a.sdf"); }, "data type = 8");
 }
 
@@ -291,12 +293,32 @@ TEST(SurfaceVariants, SdfOfEveryMagic) {
         ASSERT_TRUE(looks_like_sdf(bytes)) << magic;
         EXPECT_EQ(parse_sdf(bytes, "a.sdf").map.height.values, expected) << magic;
     }
-    for (const char* magic : {"aISO-1.0", "aBCR-1.0", "aBCR-0.0", "aNPL-1.0"}) {
+    for (const char* magic : {"aISO-1.0", "aISO-2.0", "aBCR-1.0", "aBCR-0.0", "aNPL-1.0"}) {
         const std::string bytes = renamed(sdf_text(slope(3, 2), {}), magic);
         ASSERT_TRUE(looks_like_sdf(bytes)) << magic;
         EXPECT_EQ(parse_sdf(bytes, "a.sdf").map.height.values, expected) << magic;
     }
-    EXPECT_FALSE(looks_like_sdf("aISO-2.0"));
+    EXPECT_FALSE(looks_like_sdf("aISO-3.0"));
+}
+
+// Version 2.0 counts in 32 bits and marks gaps in bytes too. MountainsMap 11 leaves bytes of its memory behind the
+// name.
+TEST(SurfaceVariants, SdfOfVersionTwo) {
+    const auto wide = [](std::string bytes, int type) {
+        bytes.replace(0, 18, std::string("bISO-2.0test\0\x07\xff\x01xy", 18));
+        bytes[79] = static_cast<char>(type);
+        bytes.insert(46, 2, '\0');
+        bytes.insert(44, 2, '\0');
+        return bytes;
+    };
+    const auto file = parse_sdf(wide(sdf_bytes(slope(3, 2), {}), 7), "a.sdf");
+    EXPECT_EQ(file.map.height.values, slope(3, 2).height.values);
+    EXPECT_EQ(file.map.pitch_y, slope(3, 2).pitch_y);
+    EXPECT_EQ(file.provenance.manufacturer, "test");
+    const auto bytes = parse_sdf(wide(sdf_of<std::int8_t>(4, {1, 2, -128, 4, -127, 6}), 4), "a.sdf").map;
+    EXPECT_TRUE(std::isnan(bytes.height(2, 1)));
+    EXPECT_NEAR(bytes.height(1, 0), -127e3, 1e-9);
+    expect_told([&] { (void)parse_sdf(wide(sdf_bytes(slope(3, 2), {}), 7).substr(0, 84), "a.sdf"); }, "header");
 }
 
 std::string al3d_of(int rows, const std::string& more_tag, std::size_t row_bytes) {
