@@ -230,6 +230,28 @@ TEST(Calibration, ASlopeIsLimitedWhereItsPointsAreWrongOrMissing) {
     EXPECT_NEAR(figure(findings, "most_wrong_percent").value, 10, 1);
 }
 
+// Pixels whose columns stand at 90.1 degrees to the rows look at (-tan(0.1 degrees) y, y), as detector.shear_deg = 0.1
+// has them do, and the certificate tells this angle.
+TEST(Calibration, ASkewOfTheInstrumentsAxesIsFoundWithItsSign) {
+    constexpr double shear_deg = 0.1;
+    const auto characteristic = lateral_mapping();
+    auto own = conditions();
+    own.window = 0.005;
+    const double wave = 2 * pi / (4 * own.window);
+    std::vector<std::string> remarks;
+    std::vector<TrialResult> results;
+    for (const Trial& trial : characteristic.trials(own, remarks)) {
+        results.push_back({.name = trial.name, .heights = map_of([&](double x, double y) {
+                                                   const double seen = x - std::tan(shear_deg * radians_per_degree) * y;
+                                                   return 1e-3 * (std::cos(wave * seen) + std::cos(wave * y));
+                                               })});
+    }
+    ASSERT_FALSE(results.empty());
+    const auto findings = characteristic.evaluate(own, results);
+    EXPECT_NEAR(figure(findings, "perpendicularity_deg").value, shear_deg, 0.01 * shear_deg);
+    EXPECT_NEAR(figure(findings, "alpha_x").value, 1, 1e-4);
+}
+
 // The transfer of a box window of W at a period P is sinc(W / P), which is one half at P = 1.657 W.
 TEST(Calibration, TheResolutionIsThatOfAKnownTransfer) {
     auto c = conditions();

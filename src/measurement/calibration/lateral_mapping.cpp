@@ -72,10 +72,11 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
             findings.remarks.push_back(fmt::format("Too few nodes were measured at the {} of the scan.", places[k]));
             continue;
         }
+        // Axes that stand at more than a right angle see the lattice's at less than one.
+        const double perpendicularity = -map->perpendicularity;
         table.rows.push_back({z * um_per_mm, static_cast<double>(nodes.size()), map->amplification_u,
-                              map->amplification_v, map->amplification_error,
-                              map->perpendicularity / radians_per_degree, map->largest_deviation * um_per_mm,
-                              map->scatter * um_per_mm});
+                              map->amplification_v, map->amplification_error, perpendicularity / radians_per_degree,
+                              map->largest_deviation * um_per_mm, map->scatter * um_per_mm});
         if (k != middle_place) {
             continue;
         }
@@ -89,9 +90,9 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
                                         .degrees_of_freedom = freedom});
         }
         findings.figures.push_back({.key = "perpendicularity_deg",
-                                    .title = "perpendicularity, the angle between x and y less 90°",
+                                    .title = "perpendicularity, the angle from the instrument's x to its y less 90°",
                                     .unit = "deg",
-                                    .value = map->perpendicularity / radians_per_degree,
+                                    .value = perpendicularity / radians_per_degree,
                                     .standard_uncertainty = map->perpendicularity_error / radians_per_degree,
                                     .degrees_of_freedom = freedom});
         findings.figures.push_back({.key = "mapping_deviation_um",

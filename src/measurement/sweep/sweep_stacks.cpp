@@ -210,9 +210,6 @@ std::vector<std::vector<std::size_t>> SweptStacks::rows_by_light() const {
 int SweptStacks::lanes() const {
     constexpr int most_lanes = 3; // more gain nothing: measured on an H200 with 16 cores
     const Configuration& first = *stacks_.front();
-    if (const char* forced = std::getenv("VKFV_LANES_EXPERIMENT")) {
-        return std::atoi(forced);
-    }
     if (first.trace.device == "host") {
         return 1;
     }
