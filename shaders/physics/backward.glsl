@@ -382,17 +382,16 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
     real pitch = real(2.0) * instrument.detector_half_width / real(instrument.detector_columns);
     BackwardStart start = backward_start(lattice, shift, point);
     start = on_sensitive(instrument, start);
-    ArrivalPlace watched = arrival_place(
-        instrument, exposure,
-        turn * real2((real(column) + start.column) * pitch - instrument.detector_half_width,
-                     (real(row) + start.row) * pitch - instrument.detector_half_height));
+    ArrivalPlace watched =
+        arrival_place(instrument, exposure,
+                      turn * real2((real(column) + start.column) * pitch - instrument.detector_half_width,
+                                   (real(row) + start.row) * pitch - instrument.detector_half_height));
     Light light = light_of_spectral(instrument, real(0.0));
     if ((features(VKFV_SCENE_ALONE) & FEATURE_SPECTRUM) != 0u) {
         light = draw_light(VKFV_SCENE instrument, lattice_coordinate(lattice, point, lattice.z_7, shift.second.w));
     }
-    BackwardArrival arrival =
-        look_from_detector(VKFV_SCENE instrument, backward, specimen, exposure, watched.place.x, watched.place.y,
-                           start.pupil, light);
+    BackwardArrival arrival = look_from_detector(VKFV_SCENE instrument, backward, specimen, exposure, watched.place.x,
+                                                 watched.place.y, start.pupil, light);
     real value = real(0.0);
     real throughput = arrival.weight * watched.area;
     if ((features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u) {

@@ -19,8 +19,8 @@ struct ArrivalPlace {
     real area;
 };
 
-// The place at which light arrives that is recorded at `recorded`: the inverse of recorded_place(), for distortions that
-// rise with the distance; lay_out() in optics refuses others.
+// The place at which light arrives that is recorded at `recorded`: the inverse of recorded_place(), for distortions
+// that rise with the distance; lay_out() in optics refuses others.
 VKFV_FUNCTION ArrivalPlace arrival_place(Instrument instrument, Exposure exposure, real2 recorded) {
     real scale = real(1.0) + exposure.magnification_change;
     real2 scaled = recorded / scale;

@@ -26,13 +26,14 @@ std::string Key::unit() const {
         return {};
     }
     // Endings of names and their units; an ending that contains another one comes first.
-    constexpr std::array<std::pair<const char*, const char*>, 14> units = {{{"_um2_per_hz", "um2/Hz"},
+    constexpr std::array<std::pair<const char*, const char*>, 15> units = {{{"_um2_per_hz", "um2/Hz"},
                                                                             {"_e_per_s", "e-/s"},
                                                                             {"_um_per_s", "um/s"},
                                                                             {"_hz", "Hz"},
                                                                             {"_dn_per_e", "DN/e-"},
                                                                             {"_percent", "%"},
                                                                             {"_mm", "mm"},
+                                                                            {"_per_um", "1/um"},
                                                                             {"_um", "um"},
                                                                             {"_deg", "deg"},
                                                                             {"_ms", "ms"},

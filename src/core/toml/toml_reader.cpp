@@ -38,8 +38,7 @@ double stand_in(const NumberRange& range) {
 }
 
 std::string remedy_for_number(const std::string& path, std::string_view key, double value, const NumberRange& range) {
-    const bool in_um = key.substr(0, key.find('[')).ends_with("_um");
-    const auto remedy = in_um ? remedy_for_length_um(value, range) : std::nullopt;
+    const auto remedy = is_length_in_um(key) ? remedy_for_length_um(value, range) : std::nullopt;
     return remedy.value_or(fmt::format("Correct {}.", path));
 }
 

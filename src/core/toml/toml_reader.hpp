@@ -40,9 +40,12 @@ struct NumberRange {
     std::string to_string() const;
 };
 
+// True for a key whose name says that its value is a length in um; "magnification_per_um" is none.
+bool is_length_in_um(std::string_view key);
+
 // The expectation in the message that refuses an unphysical length: 0, or a length of either sign from 1 pm, a
-// hundredth of an atom, to 1000 km. None for such a length, and for a key whose name ends neither in "_mm" nor in
-// "_um". Squares and quotients of other lengths would exceed the range of a double.
+// hundredth of an atom, to 1000 km. None for such a length, and for a key whose name says no length in mm or um.
+// Squares and quotients of other lengths would exceed the range of a double.
 std::optional<std::string> expected_length(std::string_view key, double value);
 
 // The remedy for a length in um beyond its range that most likely was given in nm; none if it was not.

@@ -31,10 +31,14 @@ std::string shortest_toml(double value) {
     return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-std::optional<std::string> expected_length(std::string_view key, double value) {
+bool is_length_in_um(std::string_view key) {
     const std::string_view name = key.substr(0, key.find('['));
-    const bool in_um = name.ends_with("_um");
-    if ((!in_um && !name.ends_with("_mm")) || value == 0) {
+    return name.ends_with("_um") && !name.ends_with("_per_um");
+}
+
+std::optional<std::string> expected_length(std::string_view key, double value) {
+    const bool in_um = is_length_in_um(key);
+    if ((!in_um && !key.substr(0, key.find('[')).ends_with("_mm")) || value == 0) {
         return std::nullopt;
     }
     const double shortest = in_um ? 1e-6 : 1e-9, longest = in_um ? 1e12 : 1e9;
