@@ -75,9 +75,8 @@ const NumberKey numerical_aperture = of_kinds(
                                                            "there.")));
 const NumberKey
     magnification_rate("magnification_per_um", NumberRange::within(-0.01, 0.01), Default::in_words("0"),
-                       "Share by which the magnification grows when the focal plane rises by 1 um; at z = 0 it is that "
-                       "of the lenses. A lens "
-                       "that is not telecentric does so on its own: this is to see what a further change does.");
+                       "Share by which the magnification grows when the focal plane rises by 1 um, on top of what the "
+                       "lenses do; at z = 0 it is theirs.");
 const TextKey immersion("immersion", Default::in_words("the prescription's, else air"),
                         "Medium between specimen and objective.");
 const NumberKey aperture_stop =

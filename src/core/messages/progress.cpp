@@ -60,14 +60,22 @@ Progress Progress::on_standard_error(bool quiet) {
 }
 
 Progress::~Progress() {
-    tell_heartbeats_by({});
+    leave_heartbeats_to_the_log();
     if (line_open_) {
         *stream_ << '\n' << std::flush;
     }
 }
 
+void Progress::leave_heartbeats_to_the_log() {
+    if (style_ != Style::quiet) {
+        tell_heartbeats_by({});
+    }
+}
+
 void Progress::begin(int total, int done) {
-    tell_heartbeats_by([this](const HeartbeatState& state) { beat(state); });
+    if (style_ != Style::quiet) {
+        tell_heartbeats_by([this](const HeartbeatState& state) { beat(state); });
+    }
     const std::scoped_lock lock(mutex_);
     total_ = total;
     done_ = done;
@@ -111,7 +119,7 @@ void Progress::advance(std::uint64_t rays, const LogFields& fields) {
 }
 
 void Progress::end() {
-    tell_heartbeats_by({});
+    leave_heartbeats_to_the_log();
     const std::scoped_lock lock(mutex_);
     if (rays_ == 0 && window_.size() <= 1) {
         return;

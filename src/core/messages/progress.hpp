@@ -16,7 +16,7 @@
 namespace vkfv {
 
 // Reports one job at a time: begin, advance after each image, end. During a job, heartbeats are output in the same
-// style.
+// style; a quiet one leaves them to the log, so that it serves one of several jobs at once.
 class Progress {
   public:
     enum class Style {
@@ -52,6 +52,7 @@ class Progress {
         int images;
     };
 
+    void leave_heartbeats_to_the_log();
     double rays_per_second() const; // over the window
     double seconds_left() const;
     std::string figures() const; // for example "8.1 Mray/s  1:07 left"
