@@ -361,13 +361,13 @@ void read_detector(const TomlTable& root, Configuration& configuration) {
     if (const auto pitch = section.number_if_given(assumed_pitch)) {
         configuration.assumed_pitch = *pitch * mm_per_um;
     }
-    const auto percent = section.number_if_given(distortion), field = section.number_if_given(distortion_field);
-    if (percent.has_value() != field.has_value()) {
-        section.fail(percent ? distortion : distortion_field, "both distortion and distortion_field_mm, or neither",
-                     fmt::format("Add {} to [detector].", percent ? distortion_field.name : distortion.name));
-    } else if (percent) {
-        instrument.image.distortion = 0.01 * *percent;
-        instrument.image.field_height = *field;
+    const bool distorts = section.has(distortion);
+    if (distorts != section.has(distortion_field)) {
+        section.fail(distorts ? distortion : distortion_field, "both distortion and distortion_field_mm, or neither",
+                     fmt::format("Add {} to [detector].", distorts ? distortion_field.name : distortion.name));
+    } else {
+        instrument.image.distortion = 0.01 * section.number_if_given(distortion).value_or(0);
+        instrument.image.field_height = section.number_if_given(distortion_field).value_or(1);
     }
     instrument.image.shear = section.number_if_given(shear).value_or(0) * radians_per_degree;
     instrument.detector_placement = read_placement(section);
