@@ -5,9 +5,11 @@
 //   magnification       both times 1 + magnification_change, which follows the focal plane's height.
 // Places are those of Detection: mm on the detector's plane, about the axis, axes parallel to the specimen's.
 
-// The place at which light is recorded that arrives at `arrived`.
+// The place at which light is recorded that arrives at `arrived`. Where distances no longer rise with a negative
+// distortion (below -1/3), light is far outside, as without it, and not folded back onto the detector.
 VKFV_FUNCTION real2 recorded_place(Instrument instrument, Exposure exposure, real2 arrived) {
-    real radial = real(1.0) + instrument.image_distortion * dot(arrived, arrived);
+    real bend = instrument.image_distortion * dot(arrived, arrived);
+    real radial = bend > real(-1.0 / 3.0) ? real(1.0) + bend : real(1.0);
     real2 distorted = arrived * radial;
     return real2(distorted.x + instrument.image_shear * distorted.y, distorted.y) *
            (real(1.0) + exposure.magnification_change);
