@@ -358,7 +358,7 @@ struct SpecimenRecord {
     FIELD(real, top_distance_residual) /* mm, what rounding took from top_distance; 0 in double */ \
     FIELD(real, beside_x)              /* mm, displacement of the specimen from its place on the axis */ \
     FIELD(real, beside_y) \
-    FIELD(real, magnification_change)  /* share by which it exceeds that of a focal height of 0 */
+    FIELD(real, magnification_change)  /* share by which the magnification exceeds that at z = 0 */
 struct Exposure {
     VKFV_EXPOSURE_FIELDS(VKFV_DECLARE)
 };

@@ -50,6 +50,19 @@ class Listener {
     std::vector<HeartbeatState> states_;
 };
 
+// Several quiet jobs at once would else take the heartbeats from each other and from the log.
+TEST(Heartbeat, IsNotTakenByAQuietJob) {
+    Listener listener;
+    std::ostringstream stream;
+    vkfv::Progress quiet(stream, vkfv::Progress::Style::quiet);
+    quiet.begin(3, 0);
+    const Heartbeat heartbeat(5ms);
+    listener.next();
+    quiet.end();
+    listener.next();
+    EXPECT_EQ(stream.str(), "");
+}
+
 TEST(Heartbeat, TellsTheStageOfWorkThatNobodyCounts) {
     vkfv::enter_stage("specimen of this test");
     Listener listener;

@@ -34,5 +34,12 @@ TEST(Stages, AddUpToTheWallClock) {
     EXPECT_NEAR(seconds.at("wall clock"), wall, 0.02);
 }
 
+// Stacks that are measured side by side enter stages too, from threads of their own.
+TEST(Stages, AreThoseOfTheThreadThatEnteredTheFirst) {
+    enter_stage("of this thread");
+    std::jthread([] { enter_stage("of another thread"); }).join();
+    EXPECT_EQ(stage_now().first, "of this thread");
+}
+
 } // namespace
 } // namespace vkfv

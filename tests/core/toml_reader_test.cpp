@@ -105,6 +105,7 @@ TEST(TomlReader, LengthsAreThoseThatSomethingHas) {
               "a length that can be, 0 or from 1e-09 (1 pm) to 1e+09 mm (1000 km)");
     EXPECT_THAT(vkfv::expected_length("b_um", 2e12).value_or(""), HasSubstr("from 1e-06 (1 pm) to 1e+12 um"));
     EXPECT_TRUE(vkfv::expected_length("c_um", -1e-7));
+    EXPECT_FALSE(vkfv::expected_length("change_per_um", -1e-7)); // a rate by a length is none
     const std::vector<std::pair<const char*, double>> possible = {{"d_mm", 0.0}, {"e_mm", -1e-9}, {"f_um", 1e12},
                                                                   {"g", 1e-300}, {"h_um", 1e-6},  {"i_W", 1e-12}};
     for (const auto& [key, value] : possible) {

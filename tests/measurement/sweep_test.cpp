@@ -200,7 +200,7 @@ TEST_F(SweepOfStacks, FilesDoNotDependOnTheNumberOfLanes) {
         }
     }
     EXPECT_NE(read_file(folder_ / "1/0/topography.tif"), read_file(folder_ / "1/1/topography.tif"));
-    // What a listener throws ends the measurement.
+    // An exception of a listener ends the measurement.
     int begun = 0;
     const SweptStacks again(swept("1"));
     EXPECT_THROW(again.measure(progress, 2,

@@ -13,7 +13,7 @@ namespace vkfv::measurement {
 
 namespace {
 
-// What moves the image sideways while the focal plane rises.
+// A pixel sees the specimen by this displacement and magnification while the focal plane stands at one height.
 struct Sight {
     glm::dvec2 beside{0};   // mm, displacement of the specimen by its stage
     double image_scale = 1; // magnification over that at z = 0

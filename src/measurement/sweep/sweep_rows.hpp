@@ -42,8 +42,8 @@ class SweptStacks {
     // wait while heights are evaluated and files are written. All of them fit into the GPU's memory.
     int lanes() const;
 
-    // What is told of the measurement, by calls that never overlap. With several lanes they come from other threads and
-    // in any order of the rows.
+    // A listener follows the measurement by calls that never overlap. With several lanes they come from other threads,
+    // and in any order of the rows.
     struct Listener {
         std::function<void(std::size_t row)> begins;                          // before the row's first stack
         std::function<void(std::size_t row, const StackResult&)> after_stack; // when a stack is measured

@@ -266,9 +266,10 @@ Worst worst_of(const Setting& setting, const std::vector<glm::dvec2>& points, gl
         PointImage image = point_image(imaging, outline, setting.height, setting.nodes);
         image.relative_light = outline.area() / setting.on_axis.area();
         const double magnification = real_magnification(setting, imaging, outline, axis_centroid);
-        const double distance = magnification * glm::length(outline.position);
-        const double recorded = 1 + setting.instrument.constants.image_distortion * distance * distance;
-        return Worst{image, outline, recorded * magnification / setting.instrument.first_order.magnification - 1};
+        const glm::dvec2 arrived = magnification * outline.position;
+        const glm::dvec2 recorded = physics::f64::recorded_place(setting.instrument.constants, {}, arrived);
+        const glm::dvec2 paraxial = setting.instrument.first_order.magnification * outline.position;
+        return Worst{image, outline, glm::length(recorded) / glm::length(paraxial) - 1};
     });
     Worst worst = all.front();
     for (const Worst& one : all) {

@@ -50,9 +50,11 @@ double reach(const Surface& surface) {
     return root > 0 ? short_of_equator / root : std::numeric_limits<double>::infinity();
 }
 
-double free_radius(const Element& element, const physics::f64::Instrument& constants) {
+double free_radius(const Element& element, const Instrument& instrument) {
     if (element.kind == Kind::detector) {
-        return std::hypot(constants.detector_half_width, constants.detector_half_height);
+        // A compressed image shows light that arrives beyond the detector's corners.
+        const auto& constants = instrument.constants;
+        return instrument.image_reach * std::hypot(constants.detector_half_width, constants.detector_half_height);
     }
     const double limit =
         is_limited(element.surface) ? std::sqrt(element.surface.semi_diameter_squared) : unlimited_radius;
@@ -80,7 +82,7 @@ Room furnish(const Instrument& instrument) {
     std::map<Part, double> widest; // largest free radius in each part
     for (const optics::Element& element : instrument.elements) {
         double& radius = widest[element.part];
-        radius = std::max(radius, free_radius(element, instrument.constants));
+        radius = std::max(radius, free_radius(element, instrument));
     }
     for (const optics::Element& placed : instrument.elements) {
         const bool patterned = (placed.surface.flags & SURFACE_LIGHT_FIELD) != 0;
@@ -90,7 +92,7 @@ Room furnish(const Instrument& instrument) {
         physics::f64::Element element{};
         element.surface = placed.surface;
         element.kind = kind_of(placed.kind);
-        const double radius = free_radius(placed, instrument.constants);
+        const double radius = free_radius(placed, instrument);
         element.surface.semi_diameter_squared = radius * radius;
         stand(element, placed.pose);
         const bool mounted = is_limited(placed.surface) || has_barrel(placed.part);
