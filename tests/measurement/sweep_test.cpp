@@ -35,14 +35,14 @@ class SweepOfStacks : public testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    // The stacks are small, of 11 images with pixels in few parts, and each combination has two repeats.
+    // The stacks are small, of 11 images without waves, and each combination has two repeats.
     std::vector<TomlOverride> overrides(const std::string& surfaces, const fs::path& out) const {
         return {{"trace.rays", "1e5", ""},
                 {"detector.pixels", "16", ""},
                 {"specimen.size_mm", "0.14", ""},
                 {"scan.z_step_um", "2.7", ""},
                 {"topography.smoothing_steps", "0.7", ""},
-                {"diffraction.parts_per_pixel", "2", ""},
+                {"diffraction.model", "\"none\"", ""},
                 {"sweep.repeats", "2", ""},
                 {"output.directory", toml_quoted((folder_ / out).string()), ""},
                 {"output.surfaces", surfaces, ""}};
@@ -167,7 +167,6 @@ TEST_F(SweepOfStacks, FilesDoNotDependOnTheNumberOfLanes) {
             auto own = overrides("[\"tiff\"]", fs::path(out) / std::to_string(rows.size()));
             own.push_back({"trace.seed", seed, ""});
             own.push_back({"trace.rays", "4e3", ""});
-            own.push_back({"diffraction.model", "\"none\"", ""});
             own.push_back({"detector.assumed_pitch_um", pitch, ""});
             own.push_back({"trace.estimator", "\"backward\"", ""});
             rows.push_back({load_stack(folder_ / "c.toml", own)});

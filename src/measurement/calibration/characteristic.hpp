@@ -37,6 +37,8 @@ struct Conditions {
     double middle() const { return lowest + 0.5 * range; }
     // The heights that are measured without an influence of the scan's ends.
     double usable_range() const { return range - 4 * curve_deviation; }
+    // The tangent of the angle between the axis and the rim of the light cone.
+    double cone_slope() const { return range > 0 ? 2 * blur / range : 0; }
     // Nesting index of the S-filter before figures of a whole surface.
     double s_filter() const { return 2.5 * window; }
 };

@@ -23,12 +23,13 @@ Design design_of(const Conditions& conditions) {
 
 std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>& remarks) {
     constexpr double widths_a_field = 3, share_of_range = 0.5, most_turn = 1, most_tilt = 0.5; // degrees
-    const double width = std::min(12 * conditions.window, conditions.field() / widths_a_field);
-    const double depth = share_of_range * conditions.usable_range();
-    if (depth < 2 * conditions.step || width < 3 * conditions.window) {
-        remarks.push_back("Neither the scan nor the field holds a groove.");
+    const double wished = share_of_range * conditions.usable_range();
+    const Groove groove = groove_of(conditions, wished, 1 / widths_a_field);
+    if (groove.depth < 2 * conditions.step || groove.width < 3 * conditions.window) {
+        remarks.push_back("The scan or the field is too small for a groove.");
         return {};
     }
+    remark_shallower(conditions, groove, wished, remarks);
     std::mt19937 random(conditions.seed);
     const auto within = [&](double most) {
         return most * (2 * static_cast<double>(random()) / static_cast<double>(std::mt19937::max()) - 1);
@@ -39,13 +40,8 @@ std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>
     for (int place = 0; place < places; ++place) {
         const double x = within(aside), y = within(aside), turn = within(most_turn * radians_per_degree);
         const double tilt_x = within(most_tilt * radians_per_degree), tilt_y = within(most_tilt * radians_per_degree);
-        const std::string specimen =
-            standard_of(conditions, "groove",
-                        fmt::format("width_um = {}\ndepth_um = {}\nwall_um = {}\n", um(width), um(depth),
-                                    um(std::max(conditions.pitch, std::min(depth, width / 8)))),
-                        conditions.pitch) +
-            printed(conditions, usual_contrast, 1) +
-            placed_at(x, y, conditions.middle() + 0.5 * depth, turn, tilt_x, tilt_y);
+        const std::string specimen = groove_toml(conditions, groove, 1) +
+                                     placed_at(x, y, conditions.middle() + 0.5 * groove.depth, turn, tilt_x, tilt_y);
         for (int repeat = 0; repeat < repeats; ++repeat) {
             list.push_back({.name = fmt::format("place_{:02}/repeat_{:02}", place, repeat),
                             .specimen = specimen,
@@ -138,10 +134,10 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
 Characteristic repeatability() {
     return {.name = "repeatability",
             .title = "Repeatability and reproducibility",
-            .standard =
-                "A groove (type PGR) as deep as half of the usable scan, laid anew at random: within two windows "
-                "in x and y, 1 degree of rotation and 0.5 degrees of tilt; measured several times at each "
-                "place.",
+            .standard = "A groove (type PGR) as deep as half of the usable scan, or shallower where its walls would "
+                        "cut the light cone of its bottom, laid anew at random: within two windows "
+                        "in x and y, 1 degree of rotation and 0.5 degrees of tilt; measured several times at each "
+                        "place.",
             .procedure = "One-way analysis of variance of the errors of the depth: the repeatability is the standard "
                          "deviation within places, and the reproducibility adds the variance between them.",
             .trials = of_repetitions::trials,

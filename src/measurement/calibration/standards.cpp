@@ -32,6 +32,35 @@ std::string standard_of(const Conditions& conditions, const std::string& kind, c
                        keys);
 }
 
+Groove groove_of(const Conditions& conditions, double depth, double field_share) {
+    constexpr double windows = 12, thirds = 3;
+    const double half_window = 0.5 * conditions.window, slope = conditions.cone_slope();
+    const double wished = std::max(windows * conditions.window, thirds * (depth * slope + half_window));
+    const double width = std::min(wished, field_share * conditions.field());
+    const double clear = width / thirds - half_window; // from the edge of the middle third to the wall
+    return {.width = width, .depth = depth * slope > clear ? clear / slope : depth};
+}
+
+void remark_shallower(const Conditions& conditions, const Groove& deepest, double wished,
+                      std::vector<std::string>& remarks) {
+    if (deepest.depth < wished) {
+        remarks.push_back(fmt::format(
+            "The deepest groove is {:.3g} µm deep, {:.0f} % of the scan less four standard deviations of a focus "
+            "curve: the walls of a deeper one that the field holds would cut the light cone of its bottom.",
+            deepest.depth * um_per_mm, 100 * deepest.depth / conditions.usable_range()));
+    }
+}
+
+std::string groove_toml(const Conditions& conditions, const Groove& groove, std::uint32_t print_seed) {
+    // Steep walls stay clear of the thirds of the levels that ISO 5436-1 leaves out.
+    const double wall = std::max(conditions.pitch, std::min(groove.depth, groove.width / 8));
+    return standard_of(conditions, "groove",
+                       fmt::format("width_um = {}\ndepth_um = {}\nwall_um = {}\n", um(groove.width), um(groove.depth),
+                                   um(wall)),
+                       conditions.pitch) +
+           printed(conditions, usual_contrast, print_seed);
+}
+
 std::string placed_at(double x, double y, double z, double rotation, double tilt_x, double tilt_y) {
     const auto degrees = [](double angle) { return fmt::format("{:.9g}", angle / radians_per_degree); };
     return fmt::format("[specimen.placement]\nx_um = {}\ny_um = {}\nz_um = {}\nrotation_deg = {}\ntilt_x_deg = {}\n"

@@ -21,6 +21,23 @@ std::string printed(const Conditions& conditions, double contrast, std::uint32_t
 std::string standard_of(const Conditions& conditions, const std::string& kind, const std::string& keys,
                         double facet_pitch);
 
+// A groove with a flat bottom. mm.
+struct Groove {
+    double width, depth;
+};
+// The groove of this depth that is at least twelve windows wide, and wide enough for the middle third of its bottom,
+// which ISO 5436-1 evaluates, to receive the whole light cone past the walls: 3 (depth tan(theta) + W / 2). Where the
+// field does not hold it, it is as wide as a share `field_share` of the field, and as shallow as this width asks; the
+// depth is then at most 0 if no groove fits.
+Groove groove_of(const Conditions& conditions, double depth, double field_share);
+
+// Adds a remark where a groove is shallower than wished.
+void remark_shallower(const Conditions& conditions, const Groove& deepest, double wished,
+                      std::vector<std::string>& remarks);
+
+// The [specimen] of a groove, with the print of this seed but without its place.
+std::string groove_toml(const Conditions& conditions, const Groove& groove, std::uint32_t print_seed);
+
 // A table [specimen.placement]. mm, rad.
 std::string placed_at(double x, double y, double z, double rotation = 0, double tilt_x = 0, double tilt_y = 0);
 

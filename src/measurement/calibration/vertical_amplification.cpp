@@ -13,42 +13,41 @@ namespace {
 namespace of_depths { // files of a unity build share the unnamed namespace
 
 constexpr int depths = 7;
-constexpr double shallowest = 0.05, deepest = 0.9; // of the usable range
+constexpr double shallowest = 0.05, deepest = 0.9; // of the usable range, or shallower alike where the field is narrow
 
-double width_of(const Conditions& conditions) {
-    constexpr double wished_windows = 12, widths_a_field = 2.6; // levels beside the groove need a width on either side
-    return std::min(wished_windows * conditions.window, conditions.field() / widths_a_field);
+// The deepest groove. The others are as wide.
+Groove deepest_groove(const Conditions& conditions) {
+    constexpr double widths_a_field = 2.6; // levels beside the groove need a width on either side
+    return groove_of(conditions, deepest * conditions.usable_range(), 1 / widths_a_field);
 }
 
 std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>& remarks) {
     constexpr double least_windows = 3;
-    const double usable = conditions.usable_range(), width = width_of(conditions);
+    const double usable = conditions.usable_range();
     if (usable < 4 * conditions.step) {
         remarks.push_back(
             "The scan is shorter than four standard deviations of a focus curve and four steps: no groove "
             "fits into it.");
         return {};
     }
-    if (width < least_windows * conditions.window) {
-        remarks.push_back("The field is narrower than eight focus windows: no groove fits into it.");
+    const Groove largest = deepest_groove(conditions);
+    if (largest.width < least_windows * conditions.window || largest.depth < conditions.step) {
+        remarks.push_back("The field is narrower than eight focus windows, or than the light cone of a groove of one "
+                          "step: no groove fits into it.");
         return {};
     }
+    remark_shallower(conditions, largest, deepest * usable, remarks);
     std::vector<Trial> list;
     for (int k = 0; k < depths; ++k) {
-        const double depth = usable * (shallowest + (deepest - shallowest) * k / (depths - 1));
-        const double room = 0.5 * (usable - depth);
-        // Steep walls stay clear of the thirds of the levels that ISO 5436-1 leaves out.
-        const double wall = std::max(conditions.pitch, std::min(depth, width / 8));
+        const double share = (shallowest + (deepest - shallowest) * k / (depths - 1)) / deepest;
+        const Groove groove{.width = largest.width, .depth = largest.depth * share};
+        const double room = 0.5 * (usable - groove.depth);
         const std::vector<double> places = conditions.small ? std::vector{0.0} : std::vector{-room, 0.0, room};
         for (std::size_t place = 0; place < places.size(); ++place) {
             const auto print = static_cast<std::uint32_t>(list.size() + 1);
             list.push_back({.name = fmt::format("depth_{}_place_{}", k, place),
-                            .specimen = standard_of(conditions, "groove",
-                                                    fmt::format("width_um = {}\ndepth_um = {}\nwall_um = {}\n",
-                                                                um(width), um(depth), um(wall)),
-                                                    conditions.pitch) +
-                                        printed(conditions, usual_contrast, print) +
-                                        placed_at(0, 0, conditions.middle() + 0.5 * depth + places[place]),
+                            .specimen = groove_toml(conditions, groove, print) +
+                                        placed_at(0, 0, conditions.middle() + 0.5 * groove.depth + places[place]),
                             .overrides = repetition(conditions, static_cast<int>(list.size()))});
         }
     }
@@ -100,7 +99,7 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
                                                results.size() - truths.size(), results.size()));
     }
     findings.remarks.push_back(
-        fmt::format("The grooves are {:.3g} windows wide.", width_of(conditions) / conditions.window));
+        fmt::format("The grooves are {:.3g} windows wide.", deepest_groove(conditions).width / conditions.window));
     if (conditions.small) {
         findings.remarks.push_back("Each groove stands in the middle of the scan alone.");
     }
@@ -114,7 +113,9 @@ Characteristic vertical_amplification() {
     return {.name = "alpha_z",
             .title = "Amplification and linearity in z",
             .standard = "Grooves (type PGR) of seven depths, from 5 to 90 % of the scan less four standard deviations "
-                        "of a focus curve, at three heights in the scan.",
+                        "of a focus curve, at three heights in the scan. Each is wide enough for the middle third of "
+                        "its bottom to receive the whole light cone; where the field is too narrow for that, all are "
+                        "shallower.",
             .procedure = "Depths by ISO 5436-1. alpha_z is the slope of the least-squares line of measured over true "
                          "depths, l_z the largest distance of a depth from the line. The line has an offset of its "
                          "own, which takes what all depths have in common, such as the flatness deviation. The "
