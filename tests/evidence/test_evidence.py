@@ -236,6 +236,7 @@ class ReadingTest(unittest.TestCase):
         self.assertEqual(self.read_table(head=["", "step"], regex=["{row}: step (\\S+)"], format="{:.1f}"), [[9.7]])
         self.assertEqual(self.read_table(rows=["a", "b"], keys=["0", "1"], file="results.json", json=["rows.{row}.noise"], scale=[10], format="{:.1f}"),
                          [[5.0], [2.5]])
+        self.assertEqual(self.read_table(file="results.json", json=[["none", "none"], "share"], format="{:.1f}"), [[None, 0.894]])
 
     def test_another_value_and_another_uncertainty_are_told(self):
         run = {"figures": {"step": {"format": "{:.2f} ± {:.2f}", "tolerance": 0.05}}}

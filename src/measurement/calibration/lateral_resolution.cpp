@@ -14,12 +14,20 @@ namespace vkfv::measurement {
 namespace {
 namespace of_transfer { // files of a unity build share the unnamed namespace
 
+// The unit of periods (mm): the pixel, or an eighth of the resolution of the optics where pixels are finer, since the
+// transfer then falls to one half at longer periods than those of the window.
+double unit_of(const Conditions& conditions) {
+    constexpr double share = 1.0 / 8;
+    return std::max(conditions.pitch, share * conditions.resolution);
+}
+
 std::vector<double> periods_of(const Conditions& conditions) {
-    const std::vector<double> pixels =
+    const std::vector<double> units =
         conditions.small ? std::vector<double>{40, 20, 12, 8} : std::vector<double>{40, 28, 20, 14, 10, 8, 6};
     std::vector<double> periods;
-    for (const double one : pixels) {
-        periods.push_back(one * conditions.pitch);
+    periods.reserve(units.size());
+    for (const double one : units) {
+        periods.push_back(one * unit_of(conditions));
     }
     return periods;
 }
@@ -39,8 +47,8 @@ double star_radius(const Conditions& conditions) {
 }
 
 int petals_of(const Conditions& conditions) {
-    constexpr double outer_period = 40; // pixels
-    return std::max(4, static_cast<int>(2 * pi * star_radius(conditions) / (outer_period * conditions.pitch)));
+    constexpr double outer_period = 40; // units
+    return std::max(4, static_cast<int>(2 * pi * star_radius(conditions) / (outer_period * unit_of(conditions))));
 }
 
 std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>& remarks) {
@@ -192,16 +200,19 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
 } // namespace
 
 Characteristic lateral_resolution() {
-    return {.name = "D_LIM",
-            .title = "Lateral resolution",
-            .standard = "Sinusoids (type PPS) of 6 to 40 pixels a period in several directions, and a star (type ASG).",
-            .procedure =
-                "The transfer is the measured over the true amplitude, each by a least-squares fit, averaged "
-                "over the directions; its uncertainty is their scatter. D_LIM is the period at which it falls "
-                "to one half, linear in the frequency between the periods. On the star the transfer is found in rings.",
-            .lateral = true,
-            .trials = of_transfer::trials,
-            .evaluate = of_transfer::evaluate};
+    return {
+        .name = "D_LIM",
+        .title = "Lateral resolution",
+        .standard =
+            "Sinusoids (type PPS) of 6 to 40 pixels a period, or eighths of the optical resolution where pixels are "
+            "finer, in several directions, and a star (type ASG).",
+        .procedure =
+            "The transfer is the measured over the true amplitude, each by a least-squares fit, averaged "
+            "over the directions; its uncertainty is their scatter. D_LIM is the period at which it falls "
+            "to one half, linear in the frequency between the periods. On the star the transfer is found in rings.",
+        .lateral = true,
+        .trials = of_transfer::trials,
+        .evaluate = of_transfer::evaluate};
 }
 
 } // namespace vkfv::measurement
