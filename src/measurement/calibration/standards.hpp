@@ -21,6 +21,10 @@ std::string printed(const Conditions& conditions, double contrast, std::uint32_t
 std::string standard_of(const Conditions& conditions, const std::string& kind, const std::string& keys,
                         double facet_pitch);
 
+// A printed sinusoid in the middle of the scan, whose waves run along x turned by the angle. mm, rad.
+std::string sinusoid_standard(const Conditions& conditions, double amplitude, double period, std::uint32_t print_seed,
+                              double angle = 0);
+
 // A table [specimen.placement]. mm, rad.
 std::string placed_at(double x, double y, double z, double rotation = 0, double tilt_x = 0, double tilt_y = 0);
 
@@ -38,6 +42,19 @@ double uncertainty_of(const StandardDimension& dimension);
 
 // The median of the finite numbers; NaN if there are none.
 double median_of(std::vector<double> values);
+
+// The median of measured less true heights, mm: what the aberrations of the instrument add to every height alike.
+double common_offset(const TrialResult& result);
+
+// The points whose true heights lie within the usable range of the scan.
+struct PointShares {
+    double points = 0;    // their number
+    double right = 0;     // share measured within three standard uncertainties of the truth
+    double wrong = 0;     // share measured farther from it
+    double deviation = 0; // root mean square of the measured points' deviations, mm
+};
+// offset: mm, taken off the measured heights.
+PointShares point_shares(const Conditions& conditions, const TrialResult& result, double offset);
 
 // A straight line through points by least squares. Uncertainties are those of the scatter about the line.
 struct Line {
