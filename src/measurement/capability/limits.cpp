@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 
 namespace vkfv::measurement {
 
@@ -62,6 +63,7 @@ const std::array<Limit, 6>& limits() {
          .needed_key = "pixel_um",
          .remedy = "pixels, with as many in a window, of at most",
          .kind = Kind::least_length,
+         .property = &Properties::pixel,
          .bound = [](const Properties& own, double) { return own.window_period; },
          .needed = [](const Properties& own,
                       const SurfaceWave& wave) { return own.pixel * wave.length / own.window_period; }},
@@ -71,6 +73,7 @@ const std::array<Limit, 6>& limits() {
          .needed_key = "numerical_aperture",
          .remedy = "a numerical aperture of at least",
          .kind = Kind::least_length,
+         .property = &Properties::numerical_aperture,
          .bound = [](const Properties& own, double) { return own.resolution; },
          .needed = [](const Properties& own,
                       const SurfaceWave& wave) { return own.numerical_aperture * own.resolution / wave.length; }},
@@ -80,6 +83,7 @@ const std::array<Limit, 6>& limits() {
          .needed_key = "numerical_aperture",
          .remedy = "for a smooth surface, which this limit is for, a numerical aperture of at least",
          .kind = Kind::largest_amplitude,
+         .property = &Properties::numerical_aperture,
          .bound = [](const Properties& own,
                      double length) { return length * slope_of_aperture(own.numerical_aperture) / (2 * pi); },
          .needed = [](const Properties&,
@@ -90,6 +94,7 @@ const std::array<Limit, 6>& limits() {
          .needed_key = "window_um",
          .remedy = "with the same focus curve, a window of at most",
          .kind = Kind::largest_amplitude,
+         .property = &Properties::window,
          .bound = [](const Properties& own,
                      double length) { return std::sqrt(12.0) * own.curve_deviation * length / (2 * pi * own.window); },
          .needed =
@@ -102,6 +107,7 @@ const std::array<Limit, 6>& limits() {
          .needed_key = "noise_um",
          .remedy = "a noise of a height of at most",
          .kind = Kind::least_amplitude,
+         .property = &Properties::noise,
          .bound = [](const Properties& own, double) { return noises * own.noise; },
          .needed = [](const Properties&, const SurfaceWave& wave) { return wave.amplitude / noises; }},
         {.key = "scan",
@@ -110,6 +116,7 @@ const std::array<Limit, 6>& limits() {
          .needed_key = "scan_range_um",
          .remedy = "a scan of at least",
          .kind = Kind::largest_amplitude,
+         .property = &Properties::range,
          .bound = [](const Properties& own, double) { return 0.5 * own.usable_range; },
          .needed = [](const Properties& own,
                       const SurfaceWave& wave) { return own.range - own.usable_range + 2 * wave.amplitude; }},
@@ -125,6 +132,10 @@ std::vector<const Limit*> passed_limits(const LimitingProperties& properties, co
         }
     }
     return passed;
+}
+
+double in_unit_of_key(const Limit& limit, double value) {
+    return std::string_view(limit.needed_key).ends_with("_um") ? value * um_per_mm : value;
 }
 
 std::vector<std::string> keys_of(const std::vector<const Limit*>& passed) {

@@ -52,9 +52,10 @@ struct Limit {
     const char* key;        // in capability.json
     const char* title;      // on the page
     const char* equation;   // of the bound, for readers
-    const char* needed_key; // what of the instrument would have to change: "pixel_um", "numerical_aperture"
+    const char* needed_key; // of the property that would have to change: "pixel_um", "numerical_aperture"
     const char* remedy;     // the same in words, before the number
     Kind kind;
+    double LimitingProperties::*property; // the same as it is
     // The bound, mm: of the wavelength, or of the amplitude at this wavelength.
     double (*bound)(const LimitingProperties& properties, double length);
     // The needed property (mm, or a numerical aperture) with which the wave lies on the bound, all else unchanged.
@@ -67,6 +68,9 @@ const std::array<Limit, 6>& limits();
 
 // The limits that the wave lies beyond.
 std::vector<const Limit*> passed_limits(const LimitingProperties& properties, const SurfaceWave& wave);
+
+// A property in the unit of its key: um, or none for the numerical aperture.
+double in_unit_of_key(const Limit& limit, double value);
 
 // The keys of these limits.
 std::vector<std::string> keys_of(const std::vector<const Limit*>& passed);
