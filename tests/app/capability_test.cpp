@@ -8,6 +8,7 @@
 
 namespace vkfv::test {
 namespace {
+namespace of_capability { // files of a unity build share the unnamed namespace
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -65,5 +66,6 @@ TEST(Capability, WritesAMapAndGoesOnWhereItEnded) {
     EXPECT_EQ(run_program({"verify", stack(2).string()}, folder).exit_code, 0);
 }
 
+} // namespace of_capability
 } // namespace
 } // namespace vkfv::test

@@ -12,6 +12,7 @@
 
 namespace vkfv::measurement {
 namespace {
+namespace of_capability { // files of a unity build share the unnamed namespace
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -289,5 +290,6 @@ TEST(CapabilitySpecimen, IsToldWhichInstrumentWouldMeasureIt) {
     EXPECT_THAT(remarks_of(smooth), testing::Contains(HasSubstr("is measured robustly")));
 }
 
+} // namespace of_capability
 } // namespace
 } // namespace vkfv::measurement
