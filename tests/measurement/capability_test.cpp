@@ -40,18 +40,14 @@ LimitingProperties properties(const Conditions& of = conditions(), double numeri
     return limiting_properties(of, numerical_aperture, 1.66 * of.window, noise);
 }
 
-const Limit& limit(const std::string& key) {
-    return *std::ranges::find(limits(), key, [](const Limit& one) { return std::string(one.key); });
-}
-
 double bound(const std::string& key, double length, const LimitingProperties& own = properties()) {
-    return limit(key).bound(own, length);
+    return limit_named(key).bound(own, length);
 }
 
 // Whether the wave is beyond the limit just outside of the bound, and not just inside.
 void expect_edge(const std::string& key, const SurfaceWave& inside, const SurfaceWave& outside) {
-    EXPECT_FALSE(limit(key).passed(properties(), inside)) << key;
-    EXPECT_TRUE(limit(key).passed(properties(), outside)) << key;
+    EXPECT_FALSE(limit_named(key).passed(properties(), inside)) << key;
+    EXPECT_TRUE(limit_named(key).passed(properties(), outside)) << key;
 }
 
 TEST(CapabilityLimits, AreThoseOfClosedForms) {
@@ -78,20 +74,20 @@ TEST(CapabilityLimits, ArePassedOnTheirOuterSide) {
     EXPECT_THAT(passed_limits(properties(), {length, 5e-4}), IsEmpty());
     EXPECT_THAT(keys_of(passed_limits(properties(), {0.008, 2.1e-3})), ElementsAre("window", "slope", "relief"));
     // Without a known noise nothing lies beyond its limit.
-    EXPECT_FALSE(limit("noise").passed(properties(conditions(), aperture, surface::undefined), {length, 1e-9}));
+    EXPECT_FALSE(limit_named("noise").passed(properties(conditions(), aperture, surface::undefined), {length, 1e-9}));
 }
 
 // An instrument that has the needed property, and all else unchanged, has the wave on its limit: one with a little less
 // does not reach it, one with a little more does.
 TEST(CapabilityLimits, ANeededPropertyPutsTheWaveOnTheLimit) {
     const auto needed = [](const std::string& key, const SurfaceWave& wave) {
-        EXPECT_TRUE(limit(key).passed(properties(), wave)) << key;
-        return limit(key).needed(properties(), wave);
+        EXPECT_TRUE(limit_named(key).passed(properties(), wave)) << key;
+        return limit_named(key).needed(properties(), wave);
     };
     const auto expect_on_edge = [](const std::string& key, const SurfaceWave& wave, const LimitingProperties& better,
                                    const LimitingProperties& worse) {
-        EXPECT_FALSE(limit(key).passed(better, wave)) << key;
-        EXPECT_TRUE(limit(key).passed(worse, wave)) << key;
+        EXPECT_FALSE(limit_named(key).passed(better, wave)) << key;
+        EXPECT_TRUE(limit_named(key).passed(worse, wave)) << key;
     };
     constexpr double less = 0.999, more = 1.001;
     const SurfaceWave fine{.length = 0.004, .amplitude = 1e-4};
@@ -250,6 +246,36 @@ TEST(CapabilitySpecimen, IsTheSinusoidOfItsRoughness) {
     EXPECT_FALSE(roughness_of(map_of([](double x, double) { return 0.3 * x; })));
 }
 
+// The areal Gaussian S-filter (ISO 16610-61) leaves 2^-(L / lambda)^2 of a wave, for a nesting index L. Between the
+// periods tried the share is linear in the logarithm of the period, which is off by less than 0.02 here.
+TEST(CapabilitySpecimen, LosesWhatAnSFilterTakesOff) {
+    constexpr double pitch = 0.00025, length = 0.004;
+    const auto rough =
+        roughness_of(map_of([](double x, double) { return 0.001 * std::cos(2 * pi * x / length); }, pitch));
+    ASSERT_TRUE(rough);
+    for (const double period : {0.001, 0.002, 0.004, 0.006}) {
+        const double left = std::exp2(-std::pow(period / length, 2));
+        EXPECT_NEAR(rough->kept_by(period).sq, left, 0.02) << period;
+        EXPECT_NEAR(rough->kept_by(period).rms_slope, left, 0.02) << period;
+    }
+    EXPECT_NEAR(rough->period_keeping(0.9, &KeptRoughness::sq), length * std::sqrt(-std::log2(0.9)), 0.05 * length);
+    EXPECT_NEAR(rough->period_keeping(0.5, &KeptRoughness::rms_slope), length, 0.03 * length);
+}
+
+// A short wave has most of the slopes and a long one most of the heights, so that Sdq is lost before Sq.
+TEST(CapabilitySpecimen, LosesItsSlopesFirst) {
+    constexpr double pitch = 0.0005;
+    const auto rough = roughness_of(map_of(
+        [](double x, double) { return 0.001 * std::cos(2 * pi * x / 0.032) + 0.0002 * std::cos(2 * pi * x / 0.002); },
+        pitch));
+    ASSERT_TRUE(rough);
+    const auto kept = rough->kept_by(0.008); // the short wave is gone: 2^-16
+    EXPECT_NEAR(kept.sq, std::exp2(-1.0 / 16) / std::sqrt(1.04), 0.03);
+    EXPECT_LT(kept.rms_slope, 0.4); // slopes of 1 / 32 beside 1 / 10, less what four points a period lose
+    EXPECT_LT(rough->period_keeping(0.9, &KeptRoughness::rms_slope), 0.0015);
+    EXPECT_GT(rough->period_keeping(0.9, &KeptRoughness::sq), 0.004);
+}
+
 Capability rough_capability(double sq, double rms_slope) {
     Capability capability{.program = "v", .title = "c", .properties = properties()};
     capability.instrument.conditions = conditions();
@@ -260,7 +286,10 @@ Capability rough_capability(double sq, double rms_slope) {
     for (CapabilityNode& one : capability.nodes) {
         one.limits = keys_of(passed_limits(capability.properties, one.wave));
     }
-    capability.specimen = RoughSpecimen{.sq = sq, .rms_slope = rms_slope};
+    capability.specimen =
+        RoughSpecimen{.sq = sq,
+                      .rms_slope = rms_slope,
+                      .kept = {{.period = 0.001, .sq = 1, .rms_slope = 1}, {.period = 0.1, .sq = 0.8, .rms_slope = 0}}};
     return capability;
 }
 
@@ -279,7 +308,17 @@ TEST(CapabilitySpecimen, IsToldWhichInstrumentWouldMeasureIt) {
     const auto& slope = specimen.at("beyond_limits").at(1);
     EXPECT_EQ(slope.at("limit"), "slope");
     EXPECT_NEAR(slope.at("needed").get<double>(), std::sqrt(2.0 / 3), 1e-9);
+    // Half of the Sq's loss of 0.2 and a tenth of the Sdq come at 1 um times 100^0.5 and 100^0.1.
+    const auto& kept = specimen.at("kept");
+    const double lost = std::log(1.66 * 7) / std::log(100.0);
+    EXPECT_NEAR(kept.at(0).at("share").get<double>(), 1 - 0.2 * lost, 1e-9);
+    EXPECT_NEAR(kept.at(1).at("share").get<double>(), 1 - lost, 1e-9);
+    EXPECT_NEAR(kept.at(0).at("period_um").get<double>(), 10, 1e-9);
+    EXPECT_NEAR(kept.at(1).at("period_um").get<double>(), std::pow(100, 0.1), 1e-9);
+    EXPECT_NEAR(kept.at(1).at("pixel_um").get<double>(), std::pow(100, 0.1) / (1.66 * 7), 1e-9);
+    EXPECT_NEAR(kept.at(1).at("numerical_aperture").get<double>(), 0.61 * 0.5876 / std::pow(100, 0.1), 1e-9);
     const std::string page = capability_page(capability);
+    EXPECT_THAT(page, HasSubstr("leave 46.7 % of the Sdq"));
     EXPECT_THAT(page, HasSubstr("1.85 times the magnification"));
     EXPECT_THAT(page, HasSubstr("not measured robustly"));
     EXPECT_THAT(page, HasSubstr("not traceable"));

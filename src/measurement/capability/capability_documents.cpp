@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -51,6 +52,50 @@ std::string remedy_sentence(const LimitingProperties& properties, const Limit& l
     return sentence + ".";
 }
 
+constexpr double wanted_share = 0.9; // of Sq and Sdq, that an instrument should keep
+
+// The instrument that would keep so much of a roughness parameter.
+struct Keeper {
+    const char* parameter;
+    double kept;               // share that the present instrument leaves
+    double period;             // mm, the longest that keeps the wanted share; NaN: none
+    double pixel;              // mm, with as many in a window
+    double numerical_aperture; // least
+};
+
+std::array<Keeper, 2> keepers_of(const Capability& capability) {
+    const LimitingProperties& own = capability.properties;
+    const RoughSpecimen& rough = capability.specimen.value();
+    const KeptRoughness kept = rough.kept_by(lost_period(own));
+    const auto keeper = [&](const char* parameter, double KeptRoughness::*of) {
+        const SurfaceWave shortest{.length = rough.period_keeping(wanted_share, of), .amplitude = 0};
+        return Keeper{.parameter = parameter,
+                      .kept = kept.*of,
+                      .period = shortest.length,
+                      .pixel = limit_named("window").needed(own, shortest),
+                      .numerical_aperture = limit_named("optics").needed(own, shortest)};
+    };
+    return {keeper("Sq", &KeptRoughness::sq), keeper("Sdq", &KeptRoughness::rms_slope)};
+}
+
+std::string keeper_sentence(const Capability& capability, const Keeper& keeper) {
+    const std::string kept =
+        fmt::format("Window and optics, as an S-filter of {}, leave {:.3g} % of the {}",
+                    um_text(lost_period(capability.properties)), percent * keeper.kept, keeper.parameter);
+    if (keeper.kept >= wanted_share) {
+        return fmt::format("{}.", kept);
+    }
+    if (!std::isfinite(keeper.period)) {
+        return fmt::format("{}; not even an S-filter of half a pixel would leave {:.3g} %.", kept,
+                           percent * wanted_share);
+    }
+    return fmt::format("{}. To leave {:.3g} %, waves of {} would have to be resolved, by pixels, with as many in a "
+                       "window, of at most {}, or {:.3g} times the magnification, and by a numerical aperture of at "
+                       "least {:.3g}.",
+                       kept, percent * wanted_share, um_text(keeper.period), um_text(keeper.pixel),
+                       capability.properties.pixel / keeper.pixel, keeper.numerical_aperture);
+}
+
 void add_specimen(const Capability& capability, std::vector<std::string>& remarks) {
     if (!capability.specimen) {
         return;
@@ -67,6 +112,9 @@ void add_specimen(const Capability& capability, std::vector<std::string>& remark
     }
     if (passed.empty()) {
         remarks.emplace_back("It lies within all limits in closed form.");
+    }
+    for (const Keeper& keeper : keepers_of(capability)) {
+        remarks.push_back(keeper_sentence(capability, keeper));
     }
     const CapabilityNode& near = nearest_node(capability, wave);
     remarks.push_back(
@@ -268,7 +316,15 @@ nlohmann::ordered_json capability_json(const Capability& capability) {
                             {"wavelength_um", wave.length * um_per_mm},
                             {"amplitude_um", wave.amplitude * um_per_mm},
                             {"nearest_stack", nearest_node(capability, wave).stack},
-                            {"beyond_limits", std::move(needed)}};
+                            {"beyond_limits", std::move(needed)},
+                            {"kept", Json::array()}};
+        for (const auto& keeper : of_capability_documents::keepers_of(capability)) {
+            json["specimen"]["kept"].push_back({{"parameter", keeper.parameter},
+                                                {"share", keeper.kept},
+                                                {"period_um", keeper.period * um_per_mm},
+                                                {"pixel_um", keeper.pixel * um_per_mm},
+                                                {"numerical_aperture", keeper.numerical_aperture}});
+        }
     }
     json["remarks"] = remarks_of(capability);
     return json;

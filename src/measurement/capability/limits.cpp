@@ -2,9 +2,12 @@
 
 #include "core/mathematics/units.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
 #include <string_view>
 
 namespace vkfv::measurement {
@@ -26,6 +29,10 @@ double slope_of_aperture(double numerical_aperture) {
 
 double SurfaceWave::steepest_slope() const {
     return 2 * pi * amplitude / length;
+}
+
+double lost_period(const LimitingProperties& properties) {
+    return std::max(properties.window_period, properties.resolution);
 }
 
 LimitingProperties limiting_properties(const Conditions& conditions, double numerical_aperture, double window_period,
@@ -122,6 +129,14 @@ const std::array<Limit, 6>& limits() {
                       const SurfaceWave& wave) { return own.range - own.usable_range + 2 * wave.amplitude; }},
     }};
     return all;
+}
+
+const Limit& limit_named(std::string_view key) {
+    const auto found = std::ranges::find(limits(), key, [](const Limit& one) { return std::string_view(one.key); });
+    if (found == limits().end()) {
+        throw std::out_of_range(fmt::format("no limit {}", key));
+    }
+    return *found;
 }
 
 std::vector<const Limit*> passed_limits(const LimitingProperties& properties, const SurfaceWave& wave) {

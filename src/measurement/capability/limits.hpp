@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace vkfv::measurement {
@@ -29,6 +30,10 @@ struct LimitingProperties {
     double usable_range = 0;       // the same less two standard deviations of a focus curve at either end
     double noise = 0;              // standard deviation of a height; NaN: not known, and no limit
 };
+
+// The nesting index (mm) of an S-filter that takes short waves off as window and optics do: the larger of their
+// periods.
+double lost_period(const LimitingProperties& properties);
 
 LimitingProperties limiting_properties(const Conditions& conditions, double numerical_aperture, double window_period,
                                        double noise);
@@ -65,6 +70,9 @@ struct Limit {
 };
 
 const std::array<Limit, 6>& limits();
+
+// The limit of this key; std::out_of_range for any other.
+const Limit& limit_named(std::string_view key);
 
 // The limits that the wave lies beyond.
 std::vector<const Limit*> passed_limits(const LimitingProperties& properties, const SurfaceWave& wave);
