@@ -64,6 +64,8 @@ CapabilityResult capability(const CapabilityRequest& request, Progress& progress
         waves_of_map(conditions, of_capability::expected_noise(rows.front().front()),
                      of_capability::count_of(request.wavelengths, request.small, of_capability::usual_wavelengths),
                      of_capability::count_of(request.amplitudes, request.small, of_capability::usual_amplitudes));
+    rows.reserve(waves.size() + 1);
+    trials.reserve(waves.size() + 1);
     for (const SurfaceWave& wave : waves) {
         trials.push_back(trial_of(conditions, wave, static_cast<int>(trials.size()) - 1));
         add_row(trials.back());

@@ -158,6 +158,7 @@ std::string map_svg(const Capability& capability) {
     constexpr glm::dvec2 size(760, 480), margin(16, 16);
     constexpr double least_side = 4, more = 18;
     report::Curve places{.name = "", .points = {}, .spreads = {}};
+    places.points.reserve(capability.nodes.size());
     for (const CapabilityNode& node : capability.nodes) {
         places.points.emplace_back(node.wave.length * um_per_mm, node.wave.amplitude * um_per_mm);
     }

@@ -20,8 +20,8 @@ double longest_of(const Conditions& conditions) {
     return std::min(longest_windows * conditions.window, 0.5 * conditions.field());
 }
 
-double three_digits(double value) {
-    return std::stod(fmt::format("{:.3g}", value));
+double four_digits(double value) {
+    return std::stod(fmt::format("{:.4g}", value));
 }
 
 // Numbers from first to last in equal ratios.
@@ -29,7 +29,7 @@ std::vector<double> in_ratios(double first, double last, int count) {
     std::vector<double> values;
     values.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k) {
-        values.push_back(three_digits(first * std::pow(last / first, static_cast<double>(k) / (count - 1))));
+        values.push_back(four_digits(first * std::pow(last / first, static_cast<double>(k) / (count - 1))));
     }
     return values;
 }

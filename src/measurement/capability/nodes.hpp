@@ -33,7 +33,7 @@ struct CapabilityNode {
 void require_room_for_waves(const Conditions& conditions, const std::filesystem::path& file);
 
 // So many wavelengths from one focus window to 30 or half of the field, times so many amplitudes from the noise of a
-// height to a quarter of the scan, at least two each, both in equal ratios and to three digits. noise: mm; within a
+// height to a quarter of the scan, at least two each, both in equal ratios and to four digits. noise: mm; within a
 // thousandth and a tenth of the largest amplitude, and a thousandth if it is not known (NaN).
 std::vector<SurfaceWave> waves_of_map(const Conditions& conditions, double noise, int wavelengths, int amplitudes);
 
