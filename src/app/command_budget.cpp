@@ -50,16 +50,12 @@ Command budget_command() {
 void run_budget(const CommandOptions& options) {
     auto progress = Progress::on_standard_error(options.quiet);
     const auto own = options.of<BudgetOptions>();
-    measurement::BudgetRequest request{.file = options.file,
-                                       .overrides = options.overrides,
-                                       .measurand = own.measurand,
-                                       .trials = own.trials,
-                                       .repeats = own.repeats,
-                                       .program = version_text()};
-    if (!options.out) {
-        const std::string folder = options.file.stem().string() + "-budget"; // beside no stack of this name
-        request.overrides.push_back({"output.directory", toml_quoted(folder), "budget"});
-    }
+    const measurement::BudgetRequest request{.file = options.file,
+                                             .overrides = overrides_with_folder(options, "-budget"),
+                                             .measurand = own.measurand,
+                                             .trials = own.trials,
+                                             .repeats = own.repeats,
+                                             .program = version_text()};
     const auto result = measurement::budget(request, progress);
     if (options.json) {
         print_text(json_text(result.document) + "\n");

@@ -13,7 +13,6 @@ namespace {
 
 struct CalibrateOptions {
     std::vector<std::string> only;
-    bool small = false;
 };
 
 std::vector<std::string> names_of_characteristics() {
@@ -31,21 +30,16 @@ Command calibrate_command() {
             .summary = "The metrological characteristics of the instrument by ISO 25178-600, each measured on virtual "
                        "standards in place of the specimen, as a certificate; continues an interrupted one",
             .operands = {{"C.toml", "Configuration of a stack", into(&CommandOptions::file)}},
-            .options = together(
-                {configuration_options(),
-                 {{.name = "--only",
-                   .value = "NAMES",
-                   .description = "Characteristics, parted by commas; all if not given",
-                   .target = into(&CalibrateOptions::only),
-                   .choices = names_of_characteristics(),
-                   .list = true},
-                  {.name = "--small",
-                   .value = {},
-                   .description = "The middle 160 pixels (320 for lateral characteristics), at most 31 images, and "
-                                  "fewer repetitions: for a first look",
-                   .target = into(&CalibrateOptions::small)},
-                  out_option("Output folder"),
-                  json_option()}}),
+            .options = together({configuration_options(),
+                                 {{.name = "--only",
+                                   .value = "NAMES",
+                                   .description = "Characteristics, parted by commas; all if not given",
+                                   .target = into(&CalibrateOptions::only),
+                                   .choices = names_of_characteristics(),
+                                   .list = true},
+                                  small_option(),
+                                  out_option("Output folder"),
+                                  json_option()}}),
             .run = run_calibrate,
             .example = "vkfv calibrate assets/stacks/own_microscope.toml --small --only N_M,alpha_z"};
 }
@@ -53,15 +47,11 @@ Command calibrate_command() {
 void run_calibrate(const CommandOptions& options) {
     auto progress = Progress::on_standard_error(options.quiet);
     const auto own = options.of<CalibrateOptions>();
-    measurement::CalibrationRequest request{.file = options.file,
-                                            .overrides = options.overrides,
-                                            .only = own.only,
-                                            .small = own.small,
-                                            .program = version_text()};
-    if (!options.out) {
-        const std::string folder = options.file.stem().string() + "-calibration"; // beside no stack of this name
-        request.overrides.push_back({"output.directory", toml_quoted(folder), "calibrate"});
-    }
+    const measurement::CalibrationRequest request{.file = options.file,
+                                                  .overrides = overrides_with_folder(options, "-calibration"),
+                                                  .only = own.only,
+                                                  .small = options.small,
+                                                  .program = version_text()};
     const auto result = measurement::calibrate(request, progress);
     if (options.json) {
         print_text(json_text(result.certificate) + "\n");

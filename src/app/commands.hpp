@@ -17,6 +17,7 @@ Command image_command();
 Command sweep_command();
 Command calibrate_command();
 Command budget_command();
+Command capability_command();
 Command topography_command();
 Command compare_command();
 Command surface_command();
@@ -38,6 +39,10 @@ Command help_command();
 Command completion_command();
 Command man_command();
 
+// The overrides of a command whose results, without --out, go to a folder that is named by the configuration and this
+// ending, so that it is beside no stack of the configuration's name.
+std::vector<TomlOverride> overrides_with_folder(const CommandOptions& options, const std::string& ending);
+
 // Tells programs that read the log as JSON which folder holds a command's results.
 void tell_results(const std::filesystem::path& folder);
 
@@ -56,6 +61,9 @@ void run_calibrate(const CommandOptions& options);
 // Measures what the uncertain numbers of the configuration do to a result, and writes an uncertainty budget. Continues
 // one that was interrupted.
 void run_budget(const CommandOptions& options);
+// Measures sinusoids over wavelength and amplitude, and writes a map of what the instrument can measure beside its
+// limits. Continues one that was interrupted.
+void run_capability(const CommandOptions& options);
 // Judges the configuration, and prints warnings and figures of the instrument. Opens no device except for a forecast.
 void run_check(const CommandOptions& options);
 // Traces given rays through the imaging train, as CSV.

@@ -31,6 +31,7 @@ struct CommandOptions {
     bool log_json = false; // acted upon before the parse: run_command_line()
     std::string color;     // acted upon before the parse: run_command_line()
     bool json = false;
+    bool small = false; // a first look: a part of the field and of the scan, fewer measurements
     bool markdown = false;
 
     // The struct of the command itself, as its options have filled it.
@@ -154,6 +155,7 @@ const Command& command_named(const std::string& name);
 std::vector<Option> configuration_options(); // override values of the configuration
 Option out_option(std::string description);
 Option json_option();
+Option small_option();
 Option markdown_option();
 Option pitch_option();              // a PixelPitch
 Option accept_checksum_option();    // an AcceptChecksum

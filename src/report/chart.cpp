@@ -181,6 +181,10 @@ Axis axis_over(std::span<const Curve> curves, int direction, std::string label, 
     return {low - room, high + room, std::move(label), false};
 }
 
+dvec2 place_in_chart(dvec2 corner, dvec2 size, const Axis& x, const Axis& y, dvec2 value) {
+    return chart_frame(corner, size, x, y).place(value);
+}
+
 void draw_chart(Svg& svg, dvec2 corner, dvec2 size, std::string_view title, const Axis& x, const Axis& y,
                 std::span<const Curve> curves) {
     const Frame frame = chart_frame(corner, size, x, y);

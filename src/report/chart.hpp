@@ -37,6 +37,9 @@ Axis axis_over(std::span<const Curve> curves, int direction, std::string label, 
 void draw_chart(Svg& svg, glm::dvec2 corner, glm::dvec2 size, std::string_view title, const Axis& x, const Axis& y,
                 std::span<const Curve> curves);
 
+// Where a value of x and y lies in such a chart, for marks over it.
+glm::dvec2 place_in_chart(glm::dvec2 corner, glm::dvec2 size, const Axis& x, const Axis& y, glm::dvec2 value);
+
 // A chart of a picture that has several.
 struct Chart {
     std::string title, x_label, y_label;

@@ -61,6 +61,7 @@ TEST(CommandLine, ACommandIsItsOption) {
                                       {"sweep", "c.toml"},
                                       {"calibrate", "c.toml", "--only", "N_X"},
                                       {"budget", "c.toml", "--measurand", "Sq"},
+                                      {"capability", "c.toml"}, // too short a scan
                                       {"topography", "out", "--set", "trace.seed=9"},
                                       {"topography", "nowhere"},
                                       {"compare", "out/topography.tif", "out/truth.tif", "--json"},

@@ -256,13 +256,14 @@ int run_script(const fs::path& folder, const std::string& script) {
 }
 
 // `vkfv` as the documents call it: the program, with few rays, pixels and images where it traces, and without waves.
-// `optics`, `bench`, `calibrate`, `budget` and configurations that are to be checked alone take long whatever is asked
-// of them: `layout` reads the same configuration.
+// `optics`, `bench`, `calibrate`, `budget`, `capability` and configurations that are to be checked alone take long
+// whatever is asked of them: `layout` reads the same configuration.
 const std::string small_vkfv = R"(#!/usr/bin/env bash
 command=${1#--}
 words=("$1")
 case $HOW:$command in
-run:optics | run:bench | run:calibrate | run:budget | check:check | check:stack | check:image | check:calibrate | check:budget)
+run:optics | run:bench | run:calibrate | run:budget | run:capability | check:check | check:stack | check:image | \
+    check:calibrate | check:budget | check:capability)
     command=layout
     ;;
 esac
@@ -270,7 +271,8 @@ while shift && (($#)); do
     case $command:$1 in
     *:--rays) words+=(--rays 2000) && shift ;;
     *:trace.rays=*) words+=(trace.rays=2000) ;;
-    layout:--out | layout:--only | layout:--measurand | layout:--trials | layout:--repeats) shift ;;
+    layout:--out | layout:--only | layout:--measurand | layout:--trials | layout:--repeats | layout:--wavelengths | \
+        layout:--amplitudes) shift ;;
     layout:--small) ;;
     *) words+=("$1") ;;
     esac

@@ -49,7 +49,7 @@ def objects(node):
 
 class SchemaTest(unittest.TestCase):
     def test_schemas_are_schemas(self):
-        for name in ("results", "sweep", "image", "certificate", "budget"):
+        for name in ("results", "sweep", "image", "certificate", "budget", "capability"):
             jsonschema.Draft202012Validator.check_schema(schema(name))
             for described in objects(schema(name)):
                 self.assertIn("additionalProperties", described)
@@ -130,6 +130,23 @@ class SchemaTest(unittest.TestCase):
             self.assertGreater(budget.expanded_uncertainty_95, budget.standard_uncertainty)
             self.assertEqual(len(budget.errors), 2)
             self.assertIn("Sq", repr(budget))
+
+    def test_capability(self):
+        """Two by two sinusoids, and the place of a tilted plane with roughness."""
+        with tempfile.TemporaryDirectory() as folder:
+            scan = {"z_start_um": -40.0, "z_stop_um": 40.0, "z_step_um": 8.0}
+            capability = vkfv.capability(shared.configuration(), out=Path(folder) / "k", small=True, wavelengths=2,
+                                         amplitudes=2, scan=scan, topography={"window_px": 3},
+                                         trace={"rays": 3e4, "device": "host"}, **{"detector.pixels": [24, 20]})
+            validate(capability.content, "capability")
+            self.assertEqual(undocumented(Path(folder) / "k", "capability"), [])
+            self.assertEqual(len(capability.nodes), 4)
+            shortest, longest = capability.nodes[0], capability.nodes[-1]
+            self.assertAlmostEqual(shortest.wavelength_um, 6, places=2)  # one focus window
+            self.assertGreater(longest.amplitude_um, shortest.amplitude_um)
+            self.assertIn("window", shortest.beyond_limits)
+            self.assertGreater(capability.specimen["sq_um"], 0)
+            self.assertIn("4 sinusoids", repr(capability))
 
 
 class FilesTest(unittest.TestCase):

@@ -94,6 +94,14 @@ void add_table(report::Page& page, const CertificateTable& table) {
 
 } // namespace
 
+std::vector<std::vector<std::string>> conditions_table(const Conditions& conditions) {
+    std::vector<std::vector<std::string>> table{{"", "value"}};
+    for (const auto& row : rows_of(conditions)) {
+        table.push_back({row.words, report::reader_number(row.value)});
+    }
+    return table;
+}
+
 nlohmann::ordered_json certificate_json(const Certificate& certificate) {
     Json json = {{"statement", not_traceable},
                  {"limits", smooth_standards},
@@ -157,10 +165,7 @@ std::string certificate_page(const Certificate& certificate) {
     }
     page.section("conditions", "Conditions");
     page.picture(certificate.layout, "The instrument to scale, with rays");
-    std::vector<std::vector<std::string>> table{{"", "value"}};
-    for (const auto& row : rows_of(certificate.conditions)) {
-        table.push_back({row.words, report::reader_number(row.value)});
-    }
+    auto table = conditions_table(certificate.conditions);
     table.push_back({"device", fmt::format("{}", fmt::join(certificate.devices, "; "))});
     table.push_back({"first seed", fmt::format("{}", certificate.conditions.seed)});
     table.push_back({"digest of the instrument", certificate.identity_digest});

@@ -36,6 +36,9 @@ inline constexpr const char* smooth_standards =
     "The standards are smooth and printed: waves filter their intensity, so that speckle, phase contrast of relief and "
     "diffraction at edges are not modelled.";
 
+// The conditions of the measurements as the rows of a table, with its head.
+std::vector<std::vector<std::string>> conditions_table(const Conditions& conditions);
+
 nlohmann::ordered_json certificate_json(const Certificate& certificate);
 std::string certificate_page(const Certificate& certificate);
 

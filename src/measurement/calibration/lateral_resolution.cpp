@@ -63,12 +63,7 @@ std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>
             const auto print = static_cast<std::uint32_t>(list.size() + 1);
             list.push_back({.name = fmt::format("period_{:.0f}_px/azimuth_{:.1f}", period / conditions.pitch,
                                                 angle / radians_per_degree),
-                            .specimen = standard_of(conditions, "sinusoid",
-                                                    fmt::format("amplitude_um = {}\nperiod_um = {}\n",
-                                                                um(amplitude_of(conditions)), um(period)),
-                                                    0.5 * conditions.pitch) +
-                                        printed(conditions, usual_contrast, print) +
-                                        placed_at(0, 0, conditions.middle(), angle),
+                            .specimen = sinusoid_standard(conditions, amplitude_of(conditions), period, print, angle),
                             .overrides = repetition(conditions, static_cast<int>(list.size()))});
         }
     }

@@ -40,7 +40,7 @@ std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>
     for (int place = 0; place < places; ++place) {
         const double x = within(aside), y = within(aside), turn = within(most_turn * radians_per_degree);
         const double tilt_x = within(most_tilt * radians_per_degree), tilt_y = within(most_tilt * radians_per_degree);
-        const std::string specimen = groove_toml(conditions, groove, 1) +
+        const std::string specimen = groove_standard(conditions, groove, 1) +
                                      placed_at(x, y, conditions.middle() + 0.5 * groove.depth, turn, tilt_x, tilt_y);
         for (int repeat = 0; repeat < repeats; ++repeat) {
             list.push_back({.name = fmt::format("place_{:02}/repeat_{:02}", place, repeat),

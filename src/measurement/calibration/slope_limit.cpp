@@ -13,7 +13,7 @@ namespace vkfv::measurement {
 namespace {
 namespace of_slopes { // files of a unity build share the unnamed namespace
 
-constexpr double wanted_share = 0.95, most_wrong = 0.01, coverage = 3;
+constexpr double wanted_share = 0.95, most_wrong = 0.01;
 
 std::vector<double> tilts_of(const Conditions& conditions) {
     std::vector<double> tilts;
@@ -38,46 +38,6 @@ std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>
     return list;
 }
 
-struct Shares {
-    double points = 0;    // number of points within the usable range of the scan
-    double right = 0;     // share measured within three standard uncertainties of the truth
-    double wrong = 0;     // share measured farther from it
-    double deviation = 0; // root mean square of the measured points, mm
-};
-
-// The median of measured less true heights, mm: what the aberrations of the instrument add to every height alike.
-double offset_of(const TrialResult& result) {
-    std::vector<double> deviations = result.heights.height.values;
-    for (std::size_t k = 0; k < deviations.size(); ++k) {
-        deviations[k] -= result.truth.height.values[k];
-    }
-    return median_of(std::move(deviations));
-}
-
-Shares shares_of(const Conditions& conditions, const TrialResult& result, double offset) {
-    Shares shares;
-    double measured = 0;
-    for (std::size_t k = 0; k < result.heights.height.values.size(); ++k) {
-        const double truth = result.truth.height.values[k];
-        if (!(std::abs(truth - conditions.middle()) <= 0.5 * conditions.usable_range())) {
-            continue;
-        }
-        shares.points += 1;
-        const double off = result.heights.height.values[k] - truth - offset;
-        if (std::isfinite(off)) {
-            const bool right = std::abs(off) <= coverage * result.uncertainty.values[k];
-            shares.right += right ? 1 : 0;
-            shares.wrong += right ? 0 : 1;
-            shares.deviation += off * off;
-            measured += 1;
-        }
-    }
-    shares.right /= shares.points;
-    shares.wrong /= shares.points;
-    shares.deviation = std::sqrt(shares.deviation / measured);
-    return shares;
-}
-
 Findings evaluate(const Conditions& conditions, std::span<const TrialResult> results) {
     const auto tilts = tilts_of(conditions);
     Findings findings;
@@ -88,10 +48,10 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
     report::Curve wrong{.name = "measured and wrong", .points = {}, .spreads = {}, .markers = true};
     double limit = surface::undefined, most = 0;
     bool so_far = true;
-    const double offset = offset_of(results.front());
+    const double offset = common_offset(results.front());
     for (std::size_t k = 0; k < tilts.size(); ++k) {
         constexpr double nm = 1e6, percent = 100;
-        const Shares shares = shares_of(conditions, results[k], offset);
+        const PointShares shares = point_shares(conditions, results[k], offset);
         so_far = so_far && shares.right >= wanted_share;
         limit = so_far ? tilts[k] : limit;
         most = std::isfinite(shares.wrong) ? std::max(most, shares.wrong) : most;

@@ -1,11 +1,13 @@
 #include "measurement/calibration/standards.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "measurement/evaluation/evaluation.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -51,7 +53,7 @@ void remark_shallower(const Conditions& conditions, const Groove& deepest, doubl
     }
 }
 
-std::string groove_toml(const Conditions& conditions, const Groove& groove, std::uint32_t print_seed) {
+std::string groove_standard(const Conditions& conditions, const Groove& groove, std::uint32_t print_seed) {
     // Steep walls stay clear of the thirds of the levels that ISO 5436-1 leaves out.
     const double wall = std::max(conditions.pitch, std::min(groove.depth, groove.width / 8));
     return standard_of(conditions, "groove",
@@ -59,6 +61,14 @@ std::string groove_toml(const Conditions& conditions, const Groove& groove, std:
                                    um(wall)),
                        conditions.pitch) +
            printed(conditions, usual_contrast, print_seed);
+}
+
+std::string sinusoid_standard(const Conditions& conditions, double amplitude, double period, std::uint32_t print_seed,
+                              double angle) {
+    return standard_of(conditions, "sinusoid",
+                       fmt::format("amplitude_um = {}\nperiod_um = {}\n", um(amplitude), um(period)),
+                       0.5 * conditions.pitch) +
+           printed(conditions, usual_contrast, print_seed) + placed_at(0, 0, conditions.middle(), angle);
 }
 
 std::string placed_at(double x, double y, double z, double rotation, double tilt_x, double tilt_y) {
@@ -96,6 +106,38 @@ double median_of(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::ranges::nth_element(values, middle);
     return *middle;
+}
+
+double common_offset(const TrialResult& result) {
+    std::vector<double> deviations = result.heights.height.values;
+    for (std::size_t k = 0; k < deviations.size(); ++k) {
+        deviations[k] -= result.truth.height.values[k];
+    }
+    return median_of(std::move(deviations));
+}
+
+PointShares point_shares(const Conditions& conditions, const TrialResult& result, double offset) {
+    PointShares shares;
+    double measured = 0;
+    for (std::size_t k = 0; k < result.heights.height.values.size(); ++k) {
+        const double truth = result.truth.height.values[k];
+        if (!(std::abs(truth - conditions.middle()) <= 0.5 * conditions.usable_range())) {
+            continue;
+        }
+        shares.points += 1;
+        const double off = result.heights.height.values[k] - truth - offset;
+        if (std::isfinite(off)) {
+            const bool right = std::abs(off) <= coverage_factor * result.uncertainty.values[k];
+            shares.right += right ? 1 : 0;
+            shares.wrong += right ? 0 : 1;
+            shares.deviation += off * off;
+            measured += 1;
+        }
+    }
+    shares.right /= shares.points;
+    shares.wrong /= shares.points;
+    shares.deviation = std::sqrt(shares.deviation / measured);
+    return shares;
 }
 
 Line line_through(const std::vector<double>& x, const std::vector<double>& y) {

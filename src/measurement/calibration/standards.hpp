@@ -23,7 +23,7 @@ std::string standard_of(const Conditions& conditions, const std::string& kind, c
 
 // A groove with a flat bottom. mm.
 struct Groove {
-    double width, depth;
+    double width = 0, depth = 0;
 };
 // The groove of this depth that is at least twelve windows wide, and wide enough for the middle third of its bottom,
 // which ISO 5436-1 evaluates, to receive the whole light cone past the walls: 3 (depth tan(theta) + W / 2). Where the
@@ -36,7 +36,11 @@ void remark_shallower(const Conditions& conditions, const Groove& deepest, doubl
                       std::vector<std::string>& remarks);
 
 // The [specimen] of a groove, with the print of this seed but without its place.
-std::string groove_toml(const Conditions& conditions, const Groove& groove, std::uint32_t print_seed);
+std::string groove_standard(const Conditions& conditions, const Groove& groove, std::uint32_t print_seed);
+
+// A printed sinusoid in the middle of the scan, whose waves run along x turned by the angle. mm, rad.
+std::string sinusoid_standard(const Conditions& conditions, double amplitude, double period, std::uint32_t print_seed,
+                              double angle = 0);
 
 // A table [specimen.placement]. mm, rad.
 std::string placed_at(double x, double y, double z, double rotation = 0, double tilt_x = 0, double tilt_y = 0);
@@ -55,6 +59,19 @@ double uncertainty_of(const StandardDimension& dimension);
 
 // The median of the finite numbers; NaN if there are none.
 double median_of(std::vector<double> values);
+
+// The median of measured less true heights, mm: what the aberrations of the instrument add to every height alike.
+double common_offset(const TrialResult& result);
+
+// The points whose true heights lie within the usable range of the scan.
+struct PointShares {
+    double points = 0;    // their number
+    double right = 0;     // share measured within three standard uncertainties of the truth
+    double wrong = 0;     // share measured farther from it
+    double deviation = 0; // root mean square of the measured points' deviations, mm
+};
+// offset: mm, taken off the measured heights.
+PointShares point_shares(const Conditions& conditions, const TrialResult& result, double offset);
 
 // A straight line through points by least squares. Uncertainties are those of the scatter about the line.
 struct Line {

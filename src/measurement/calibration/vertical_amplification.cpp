@@ -46,7 +46,7 @@ std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>
         for (std::size_t place = 0; place < places.size(); ++place) {
             const auto print = static_cast<std::uint32_t>(list.size() + 1);
             list.push_back({.name = fmt::format("depth_{}_place_{}", k, place),
-                            .specimen = groove_toml(conditions, groove, print) +
+                            .specimen = groove_standard(conditions, groove, print) +
                                         placed_at(0, 0, conditions.middle() + 0.5 * groove.depth + places[place]),
                             .overrides = repetition(conditions, static_cast<int>(list.size()))});
         }

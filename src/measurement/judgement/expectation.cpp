@@ -369,15 +369,19 @@ double relief_in_windows(const surface::HeightMap& heights, double window) {
 
 double lateral_resolution_of(const topography::TopographyOptions& options, const Configuration& configuration,
                              const optics::FirstOrder& first_order) {
-    constexpr double widths_of_box = 1.66, widths_of_gaussian = 1.07, airy = 0.61;
+    constexpr double airy = 0.61;
     const double width = options.window_px * first_order.pixel_pitch;
     const double radius =
         airy * configuration.instrument.spectrum.reference_um * mm_per_um / first_order.numerical_aperture;
-    return std::max(
-        radius, width * (options.window_shape == topography::WindowShape::box ? widths_of_box : widths_of_gaussian));
+    return std::max(radius, period_of_half_in_window(options.window_shape, width));
 }
 
 } // namespace
+
+double period_of_half_in_window(topography::WindowShape shape, double width) {
+    constexpr double widths_of_box = 1.66, widths_of_gaussian = 1.07;
+    return width * (shape == topography::WindowShape::box ? widths_of_box : widths_of_gaussian);
+}
 
 double Expectation::image_noise() const {
     return std::hypot(ray_noise, camera_noise);

@@ -58,8 +58,7 @@ struct Expectation {
     double texture_over_noise = unknown; // A / sqrt(rho(0) N) of the averaged curve's maximum
     double height_noise = unknown;       // standard deviation of a height, by the images' noise
     double height_uncertainty = unknown; // standard uncertainty of a height, noise with all the rest
-    // The period of waves of which half of the height is left in the mean over a window (sin x / x is 1/2 for a box at
-    // 1.66 widths, for a Gaussian at 1.07), at least the Airy radius.
+    // period_of_half_in_window(), at least the Airy radius.
     double lateral_resolution = unknown;
     double curve_deviation = unknown; // of focus curves
 
@@ -78,6 +77,10 @@ struct Expectation {
 // seconds, without a device. Throws InputError.
 Expectation expect(const Configuration& configuration, const optics::Instrument& instrument,
                    const specimen::Specimen& specimen, double hidden_uncertainty);
+
+// The period (mm) of waves of which half of the amplitude is left in the mean over a window of this width (mm): sin x /
+// x is 1/2 for a box at 1.66 widths, the transfer of a Gaussian at 1.07.
+double period_of_half_in_window(topography::WindowShape shape, double width);
 
 // Warnings about few rays, paths of light that waste them, noise that no camera hides or has, and missing texture.
 std::vector<Warning> warnings_of(const Configuration& configuration, const Expectation& expected);

@@ -11,8 +11,9 @@ Everything is read from files; docs/python.md tells more.
 
 from .array import Array
 from .budget import Budget
+from .capability import Capability
 from .certificate import Certificate
-from .commands import Image, budget, calibrate, check, evaluate, image, run, sweep
+from .commands import Image, budget, calibrate, capability, check, evaluate, image, run, sweep
 from .errors import DeviceError, Error, FolderInUse, InputError, RunError, RunWarning
 from .focus import focus_curves
 from .program import find_program
@@ -25,6 +26,7 @@ __version__ = "1.1.0"
 __all__ = [
     "Array",
     "Budget",
+    "Capability",
     "Certificate",
     "DeviceError",
     "Error",
@@ -38,6 +40,7 @@ __all__ = [
     "Sweep",
     "budget",
     "calibrate",
+    "capability",
     "check",
     "evaluate",
     "find_program",

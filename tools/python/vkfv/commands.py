@@ -14,6 +14,7 @@ from pathlib import Path
 
 from .array import Array
 from .budget import Budget
+from .capability import Capability
 from .certificate import Certificate
 from .overrides import settings
 from .program import Event, Outcome, call
@@ -144,6 +145,28 @@ def budget(
     options = ("--measurand", measurand, "--trials", str(trials), "--repeats", str(repeats), "--json")
     outcome = _call("budget", config, overrides, out=out, options=options, program=program, on_event=on_event)
     return Budget(outcome.folder)
+
+
+def capability(
+    config: PathLike,
+    *,
+    out: PathLike | None = None,
+    wavelengths: int | None = None,
+    amplitudes: int | None = None,
+    small: bool = False,
+    program: PathLike | None = None,
+    on_event: Callable[[Event], None] | None = None,
+    **overrides,
+) -> Capability:
+    """Measures which sinusoids an instrument measures (`vkfv capability`), or continues.
+
+    wavelengths, amplitudes: their numbers, at least 2; None: 7 and 6. small: a part of the field and of the scan, with 3 and 3.
+    """
+    given = {"--wavelengths": wavelengths, "--amplitudes": amplitudes}
+    options = tuple(word for name, value in given.items() if value is not None for word in (name, str(value)))
+    options += (*(("--small",) if small else ()), "--json")
+    outcome = _call("capability", config, overrides, out=out, options=options, program=program, on_event=on_event)
+    return Capability(outcome.folder)
 
 
 def evaluate(

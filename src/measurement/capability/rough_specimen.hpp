@@ -1,0 +1,45 @@
+// The place of a rough specimen on a capability map.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "measurement/capability/limits.hpp"
+#include "surface/height_map.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// What is left of a roughness by an S-filter (ISO 16610-61) of this nesting index, at which half of a wave's amplitude
+// is left. A focus window and an optical resolution take short waves off in much the same way.
+struct KeptRoughness {
+    double period = 0;    // mm, the nesting index
+    double sq = 0;        // Sq over that of the whole surface
+    double rms_slope = 0; // Sdq over that of the whole surface
+};
+
+struct RoughSpecimen {
+    double sq = 0;                     // mm, root mean square height about the least-squares plane
+    double rms_slope = 0;              // Sdq, dimensionless
+    std::vector<KeptRoughness> kept{}; // by ascending periods, at least two
+
+    // What is left for a period (mm), linear in its logarithm; beyond the periods above that at the nearest.
+    KeptRoughness kept_by(double period) const;
+    // The longest period (mm) that keeps this share of Sq or Sdq; NaN where the shortest period does not.
+    double period_keeping(double share, double KeptRoughness::*of) const;
+
+    // The sinusoid of the same Sq and Sdq (ISO 25178-2): amplitude sqrt(2) Sq, wavelength 2 pi Sq / Sdq, which is the
+    // root mean square wavelength of the surface (R. C. Spragg, D. J. Whitehouse, "A new unified approach to surface
+    // metrology", Proc. Inst. Mech. Eng. 185, 1970).
+    SurfaceWave wave() const;
+};
+
+// The roughness of these heights; NaN at points that have none. None for a flat surface.
+std::optional<RoughSpecimen> roughness_of(const surface::HeightMap& heights);
+
+// The roughness of the configuration's specimen, at points a quarter of a pixel apart in the middle 256 pixels at most.
+// None for a standard with dimensions, whose relief is no roughness, and for a flat surface. pixel: distance of the
+// pixels on the specimen, mm. Throws InputError.
+std::optional<RoughSpecimen> rough_specimen(const Configuration& configuration, double pixel);
+
+} // namespace vkfv::measurement
