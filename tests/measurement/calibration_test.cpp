@@ -163,6 +163,13 @@ TEST(Calibration, AGrooveLeavesTheLightConeOfItsBottomWhole) {
     }
 }
 
+// The middle of a scan from -36 to 36 um is found as 7e-18 mm, which is no length that a key takes.
+TEST(Calibration, AStandardInTheMiddleOfASymmetricScanIsAtZero) {
+    EXPECT_EQ(um(6.9388939e-18), "0");
+    EXPECT_EQ(um(-6.9388939e-18), "0");
+    EXPECT_EQ(um(-0.0125), "-12.5");
+}
+
 // An error of six standard uncertainties is found within its expanded uncertainty, which leaves one of the scale's true
 // values out in one case of twenty: of 200 seeds in 10, with a standard deviation of 3.1.
 TEST(Calibration, AnErrorOfTheScaleIsFound) {

@@ -12,7 +12,9 @@
 namespace vkfv::measurement {
 
 std::string um(double mm) {
-    return fmt::format("{:.9g}", mm * um_per_mm);
+    constexpr double least = 1e-6; // um, the shortest length that keys take: sums that should be 0 leave less
+    const double length = mm * um_per_mm;
+    return fmt::format("{:.9g}", std::abs(length) < least ? 0.0 : length);
 }
 
 std::string printed(const Conditions& conditions, double contrast, std::uint32_t print_seed) {
