@@ -170,6 +170,27 @@ TEST(Calibration, AStandardInTheMiddleOfASymmetricScanIsAtZero) {
     EXPECT_EQ(um(-0.0125), "-12.5");
 }
 
+// The width of a groove that the field holds is chosen by its depth. The depth that follows from this width again may
+// be less by a rounding, as at one depth in fifteen here: the groove then has its depth, and no remark says otherwise.
+TEST(Calibration, AGrooveIsNoShallowerByRounding) {
+    auto c = conditions();
+    c.pixels = ImageSize::square(1 << 14);
+    c.blur = 0.5 * c.range * 2;
+    int rounded = 0;
+    for (int k = 1; k <= 1000; ++k) {
+        const double wished = 3e-3 + 4.1e-5 * k;
+        const Groove groove = groove_of(c, wished, 0.4);
+        EXPECT_EQ(groove.depth, wished) << k;
+        rounded += (groove.width / 3 - 0.5 * c.window) / c.cone_slope() < wished ? 1 : 0;
+        std::vector<std::string> remarks;
+        remark_shallower(c, {.width = groove.width, .depth = std::nextafter(wished, 0.0)}, wished, remarks);
+        EXPECT_TRUE(remarks.empty());
+        remark_shallower(c, {.width = groove.width, .depth = (1 - 1e-6) * wished}, wished, remarks);
+        EXPECT_EQ(remarks.size(), 1u);
+    }
+    EXPECT_GT(rounded, 10);
+}
+
 // An error of six standard uncertainties is found within its expanded uncertainty, which leaves one of the scale's true
 // values out in one case of twenty: of 200 seeds in 10, with a standard deviation of 3.1.
 TEST(Calibration, AnErrorOfTheScaleIsFound) {
@@ -289,8 +310,8 @@ TEST(Calibration, ASkewOfTheInstrumentsAxesIsFoundWithItsSign) {
     EXPECT_NEAR(figure(findings, "alpha_x").value, 1, 1e-4);
 }
 
-// The transfer of a box window of W at a period P is sinc(W / P), which is one half at P = 1.657 W.
-// The transfer sinc(W / P) of a window of `window` pixels. Pixels much finer than the optics resolve meet it too.
+// The transfer of a box window of W at a period P is sinc(W / P), which is one half at P = 1.657 W. Pixels much finer
+// than the optics resolve meet it too.
 TEST(Calibration, TheResolutionIsThatOfAKnownTransfer) {
     struct Case {
         double resolution; // mm
@@ -317,7 +338,7 @@ TEST(Calibration, TheResolutionIsThatOfAKnownTransfer) {
         }
         EXPECT_TRUE(remarks.empty());
         const auto findings = characteristic.evaluate(c, results);
-        EXPECT_NEAR(figure(findings, "D_LIM_um").value, 1.657 * one.window, 0.015 * one.window);
+        EXPECT_NEAR(figure(findings, "D_LIM_um").value, 1.657 * one.window, 0.1 / 7 * one.window);
     }
 }
 

@@ -94,6 +94,11 @@ void add_table(report::Page& page, const CertificateTable& table) {
 
 } // namespace
 
+std::string scan_text(const Conditions& conditions) {
+    return fmt::format("{:.3g} µm of the scan, in steps of {:.3g} µm", conditions.range * um_per_mm,
+                       conditions.step * um_per_mm);
+}
+
 std::vector<std::vector<std::string>> conditions_table(const Conditions& conditions) {
     std::vector<std::vector<std::string>> table{{"", "value"}};
     for (const auto& row : rows_of(conditions)) {
@@ -140,6 +145,11 @@ std::string certificate_page(const Certificate& certificate) {
     report::Page page;
     page.section("figures", "Characteristics");
     page.paragraph(not_traceable);
+    if (certificate.conditions.small) {
+        page.paragraph(fmt::format("With --small the standards were measured in the middle of the field and on {}; "
+                                   "figures that depend on field and scan are those of this part.",
+                                   scan_text(certificate.conditions)));
+    }
     std::vector<std::vector<std::string>> all{figure_heads()};
     for (const auto& entry : certificate.entries) {
         for (const auto& figure : entry.findings.figures) {

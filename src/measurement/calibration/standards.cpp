@@ -11,6 +11,18 @@
 
 namespace vkfv::measurement {
 
+namespace {
+namespace of_standards { // files of a unity build share the unnamed namespace
+
+// Of two lengths that rounding alone tells apart, neither counts as shorter.
+bool is_less(double length, double than) {
+    constexpr double slack = 1e-9;
+    return length < (1 - slack) * than;
+}
+
+} // namespace of_standards
+} // namespace
+
 std::string um(double mm) {
     constexpr double least = 1e-6; // um, the shortest length that keys take: sums that should be 0 leave less
     const double length = mm * um_per_mm;
@@ -42,12 +54,12 @@ Groove groove_of(const Conditions& conditions, double depth, double field_share)
     const double wished = std::max(windows * conditions.window, thirds * (depth * slope + half_window));
     const double width = std::min(wished, field_share * conditions.field());
     const double clear = width / thirds - half_window; // from the edge of the middle third to the wall
-    return {.width = width, .depth = depth * slope > clear ? clear / slope : depth};
+    return {.width = width, .depth = of_standards::is_less(clear, depth * slope) ? clear / slope : depth};
 }
 
 void remark_shallower(const Conditions& conditions, const Groove& deepest, double wished,
                       std::vector<std::string>& remarks) {
-    if (deepest.depth < wished) {
+    if (of_standards::is_less(deepest.depth, wished)) {
         remarks.push_back(fmt::format(
             "The deepest groove is {:.3g} µm deep, {:.0f} % of the scan less four standard deviations of a focus "
             "curve: the walls of a deeper one that the field holds would cut the light cone of its bottom.",
@@ -82,7 +94,7 @@ std::string placed_at(double x, double y, double z, double rotation, double tilt
 
 std::vector<TomlOverride> repetition(const Conditions& conditions, int k) {
     return {{conditions.camera ? "camera.noise_seed" : "trace.seed",
-             fmt::format("{}", conditions.seed + static_cast<std::uint32_t>(k)), "calibrate"}};
+             fmt::format("{}", conditions.seed + static_cast<std::uint32_t>(k)), origin_of_standards}};
 }
 
 const StandardDimension* dimension(const TrialResult& result, const std::string& name) {

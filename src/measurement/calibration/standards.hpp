@@ -13,6 +13,9 @@ namespace vkfv::measurement {
 // its mean.
 inline constexpr double usual_contrast = 0.5;
 
+// Where overrides of the configuration come from, as messages name it.
+inline constexpr const char* origin_of_standards = "virtual standards";
+
 // The tables below [specimen] of a Lambertian surface with a print, whose grain the optics and the pixels resolve.
 std::string printed(const Conditions& conditions, double contrast, std::uint32_t print_seed);
 
@@ -45,8 +48,8 @@ std::string sinusoid_standard(const Conditions& conditions, double amplitude, do
 // A table [specimen.placement]. mm, rad.
 std::string placed_at(double x, double y, double z, double rotation = 0, double tilt_x = 0, double tilt_y = 0);
 
-// The overrides of repetition k of a measurement: other noise of the camera on the same light, or without a camera
-// other rays.
+// The overrides of repetition k of a measurement: another seed of the camera's noise on the same light, or without a
+// camera another seed of the rays.
 std::vector<TomlOverride> repetition(const Conditions& conditions, int k);
 
 // A length in um as TOML.

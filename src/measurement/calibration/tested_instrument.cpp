@@ -43,6 +43,34 @@ std::string with_pixels(const std::string& toml, int side, double pixel_um) {
     return text;
 }
 
+// The overrides that leave at most 31 images of the scan. The average along z and the fit's range, which count steps,
+// keep their lengths.
+std::vector<TomlOverride> small_scan(const Configuration& base) {
+    const auto positions = base.scan->positions();
+    if (positions.size() <= small_images) {
+        return {};
+    }
+    constexpr double sampling = 0.5; // of a focus curve's standard deviation: its peak is then found as before
+    const double range = positions.back() - positions.front(), step = positions[1] - positions[0];
+    const double deviation = focus_curve_deviation(base, assemble_for_figures(base).first_order);
+    const double wider = std::clamp(range / (small_images - 1), step, std::max(step, sampling * deviation));
+    const double middle = 0.5 * (positions.front() + positions.back());
+    const double half = 0.5 * std::min(range, (small_images - 1) * wider);
+    const auto override_of = [](const std::string& key, double value) {
+        return TomlOverride{key, fmt::format("{:.12g}", value), origin_of_standards};
+    };
+    std::vector<TomlOverride> overrides = {override_of("scan.z_start_um", (middle - half) * um_per_mm),
+                                           override_of("scan.z_stop_um", (middle + half) * um_per_mm),
+                                           override_of("scan.z_step_um", wider * um_per_mm)};
+    if (const auto smoothing = base.topography.smoothing_steps) {
+        overrides.push_back(override_of("topography.smoothing_steps", *smoothing * step / wider));
+    }
+    const int reach = base.topography.peak_range_steps, usual = topography::TopographyOptions{}.peak_range_steps;
+    overrides.push_back(override_of("topography.peak_range_steps",
+                                    std::max<double>(std::min(reach, usual), std::round(reach * step / wider))));
+    return overrides;
+}
+
 // The middle of the configuration's field and scan, as far as a small calibration looks at them.
 std::string small_instrument(const Configuration& base, bool lateral) {
     const ImageSize pixels = base.instrument.detector_pixels;
@@ -52,19 +80,10 @@ std::string small_instrument(const Configuration& base, bool lateral) {
     const bool backward = base.trace.estimator == trace::Estimator::backward;
     const double paths =
         backward ? static_cast<double>(base.trace.rays) / static_cast<double>(pixels.count()) : small_paths;
-    std::vector<TomlOverride> overrides = {
-        {"trace.rays", fmt::format("{:.0f}", std::ceil(paths * side * side)), "virtual standards"}};
+    std::vector<TomlOverride> overrides = small_scan(base);
+    overrides.push_back({"trace.rays", fmt::format("{:.0f}", std::ceil(paths * side * side)), origin_of_standards});
     if (!backward) {
-        overrides.push_back({"trace.estimator", "\"auto\"", "virtual standards"});
-    }
-    const auto positions = base.scan->positions();
-    if (positions.size() > small_images) {
-        const double step = positions[1] - positions[0], middle = 0.5 * (positions.front() + positions.back());
-        const double half = 0.5 * (small_images - 1) * step;
-        overrides.push_back(
-            {"scan.z_start_um", fmt::format("{:.9g}", (middle - half) * um_per_mm), "virtual standards"});
-        overrides.push_back(
-            {"scan.z_stop_um", fmt::format("{:.9g}", (middle + half) * um_per_mm), "virtual standards"});
+        overrides.push_back({"trace.estimator", "\"auto\"", origin_of_standards});
     }
     // Read once more, so that the text has the overrides' values.
     const auto read = read_configuration(
@@ -86,7 +105,10 @@ TestedInstrument tested_instrument(const Configuration& base, TestedField field)
     const auto& first_order = assembled.first_order;
     const auto positions = configuration.scan->positions();
     const double aperture = first_order.numerical_aperture;
+    constexpr double greatest_sine = 0.99;
+    const double sine = std::min(greatest_sine, aperture / first_order.object_index);
     instrument.numerical_aperture = aperture;
+    instrument.object_index = first_order.object_index;
     const double range = positions.back() - positions.front();
     instrument.conditions = {.pixels = configuration.instrument.detector_pixels,
                              .pitch = first_order.pixel_pitch,
@@ -96,7 +118,7 @@ TestedInstrument tested_instrument(const Configuration& base, TestedField field)
                              .range = range,
                              .step = positions.size() > 1 ? positions[1] - positions[0] : 0,
                              .curve_deviation = focus_curve_deviation(configuration, first_order),
-                             .blur = 0.5 * range * aperture / std::sqrt(std::max(0.01, 1 - aperture * aperture)),
+                             .blur = 0.5 * range * sine / std::sqrt(1 - sine * sine),
                              .camera = configuration.camera.has_value(),
                              .small = small,
                              .seed = configuration.trace.seed};
@@ -108,7 +130,7 @@ TestedInstrument tested_instrument(const Configuration& base, TestedField field)
 Configuration with_standard(const TestedInstrument& instrument, const std::filesystem::path& file, const Trial& trial,
                             const std::filesystem::path& folder) {
     auto overrides = trial.overrides;
-    overrides.push_back({"output.directory", toml_quoted(folder.string()), "virtual standards"});
+    overrides.push_back({"output.directory", toml_quoted(folder.string()), origin_of_standards});
     return read_configuration(TomlTable::parse(instrument.toml + "\n" + trial.specimen, file, overrides));
 }
 

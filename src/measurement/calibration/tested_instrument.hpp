@@ -13,13 +13,15 @@ namespace vkfv::measurement {
 struct TestedInstrument {
     std::string toml; // canonical, without [specimen]
     Conditions conditions{};
-    double numerical_aperture = 0;
+    double numerical_aperture = 0; // object side, n sin(theta)
+    double object_index = 1;       // of the medium over the specimen (n)
     std::string identity_digest{}; // SHA-256 of all that images depend on, but for the specimen
     std::string layout{};          // SVG of the instrument, to scale
 };
 
 // The part of the detector and of the scan that is looked at. The small ones are the middle 160 or 320 pixels, and at
-// most 31 images.
+// most 31 images: of the whole scan if half a standard deviation of a focus curve suffices as their distance, else of
+// its middle. Settings in steps of the scan keep their lengths.
 enum class TestedField { whole, small, small_lateral };
 
 // The instrument of a configuration with [scan]. Throws InputError.
