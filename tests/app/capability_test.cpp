@@ -22,8 +22,9 @@ std::string rough_configuration() {
     text = replaced(text, "kind = \"step\"\nsize_mm = 0.2\nheight_um = 2.0",
                     "kind = \"air\"\ntiles = 1\ntile_size_mm = 0.2\npitch_um = 0.5\nsq_um = 1.0\n"
                     "roll_off_wavelength_um = 8.0\nshortest_wavelength_um = 2.0\nhurst_exponent = 0.8");
-    return replaced(text, "z_start_um = -2.0\nz_stop_um = 2.0\nz_step_um = 1.0",
+    text = replaced(text, "z_start_um = -2.0\nz_stop_um = 2.0\nz_step_um = 1.0",
                     "z_start_um = -40.0\nz_stop_um = 40.0\nz_step_um = 8.0");
+    return text + "[diffraction]\nmodel = \"none\"\n";
 }
 
 TEST(Capability, WritesAMapAndGoesOnWhereItEnded) {

@@ -45,6 +45,15 @@ const CapabilityNode& nearest_node(const Capability& capability, const SurfaceWa
     });
 }
 
+double spacing_of_map(const Capability& capability, double SurfaceWave::*of) {
+    std::set<double> values;
+    for (const CapabilityNode& node : capability.nodes) {
+        values.insert(node.wave.*of);
+    }
+    return values.size() < 2 ? 1
+                             : std::pow(*values.rbegin() / *values.begin(), 1 / static_cast<double>(values.size() - 1));
+}
+
 CapabilityResult capability(const CapabilityRequest& request, Progress& progress) {
     const Configuration base = load_configuration(request.file, request.overrides);
     Capability found{.program = request.program,
@@ -93,9 +102,7 @@ CapabilityResult capability(const CapabilityRequest& request, Progress& progress
          .after_row = [&](std::size_t, SweepRow&& row) { devices.insert(row.device); }});
     devices.erase("");
     found.devices.assign(devices.begin(), devices.end());
-    found.properties =
-        limiting_properties(conditions, found.instrument.numerical_aperture,
-                            period_of_half_in_window(base.topography.window_shape, conditions.window), noise);
+    found.properties = limiting_properties(found.instrument, base.topography.window_shape, noise);
     for (CapabilityNode& node : found.nodes) {
         node.limits = keys_of(passed_limits(found.properties, node.wave));
     }

@@ -21,7 +21,7 @@ namespace vkfv::measurement {
 struct CapabilityRequest {
     std::filesystem::path file; // the configuration of a stack, whose specimen is replaced by the sinusoids
     std::vector<TomlOverride> overrides;
-    bool small = false;               // the middle 160 pixels and 31 images at most
+    bool small = false;               // TestedField::small
     std::optional<int> wavelengths{}; // at least 2; none: 7, or 3 if small
     std::optional<int> amplitudes{};  // at least 2; none: 6, or 3 if small
     std::string program;              // version of the program, as the map names it
@@ -34,11 +34,15 @@ struct Capability {
     std::vector<std::string> devices{}; // that traced
     LimitingProperties properties{};    // with the noise of a flat
     std::vector<CapabilityNode> nodes{};
-    std::optional<RoughSpecimen> specimen{}; // of the configuration, if it is rough
+    std::optional<RoughSpecimen> specimen{}; // of the configuration, if it has no nominal dimension
 };
 
 // The node nearest to the wave, by the ratios of wavelength and amplitude. The map has nodes.
 const CapabilityNode& nearest_node(const Capability& capability, const SurfaceWave& wave);
+
+// The greater over the smaller of neighbouring numbers of the map, whose ratios are equal: of its wavelengths or
+// amplitudes. 1 for a single one.
+double spacing_of_map(const Capability& capability, double SurfaceWave::*of);
 
 struct CapabilityResult {
     nlohmann::ordered_json document; // capability.json

@@ -28,28 +28,37 @@ constexpr double percent = 100, nm_per_mm = 1e6;
 constexpr double most_bias_shown = 0.5; // at the ends of the palette
 
 std::string um_text(double mm) {
-    return fmt::format("{:.3g} µm", mm * um_per_mm);
+    return std::isfinite(mm) ? fmt::format("{:.3g} µm", mm * um_per_mm) : std::string("–");
 }
 
 std::string wave_text(const SurfaceWave& wave) {
     return fmt::format("wavelength {} and amplitude {}", um_text(wave.length), um_text(wave.amplitude));
 }
 
+// The property that the limit needs for a wave, beside the present one: "a noise of a height of at most 0.01 µm in
+// place of 0.02 µm".
+std::string needed_text(const LimitingProperties& properties, const Limit& limit, const SurfaceWave& wave) {
+    constexpr double most_sine = 0.95, most_of_gases = 1.01;
+    const double needed = limit.needed(properties, wave), present = properties.*limit.property;
+    const bool of_aperture = limit.property == &LimitingProperties::numerical_aperture;
+    const auto text = [&](double value) { return of_aperture ? fmt::format("{:.3g}", value) : um_text(value); };
+    std::string words = fmt::format("{} {} in place of {}", limit.remedy, text(needed), text(present));
+    if (limit.property == &LimitingProperties::pixel) {
+        words += fmt::format(", by {:.3g} times the magnification or by smaller pixels", present / needed);
+    }
+    if (of_aperture && needed > most_sine * properties.object_index) {
+        words += properties.object_index < most_of_gases
+                     ? std::string(", which no objective in air has")
+                     : fmt::format(", which no objective in a medium of index {:.3g} has", properties.object_index);
+    }
+    return words;
+}
+
 // What of the instrument would have to change for the specimen to lie on the limit.
 std::string remedy_sentence(const LimitingProperties& properties, const Limit& limit, const SurfaceWave& wave) {
-    constexpr double most_in_air = 0.95;
-    const double needed = limit.needed(properties, wave), present = properties.*limit.property;
-    const bool of_aperture = std::string_view(limit.needed_key) == "numerical_aperture";
-    const auto text = [&](double value) { return of_aperture ? fmt::format("{:.3g}", value) : um_text(value); };
-    std::string sentence = fmt::format("It lies beyond the limit {} ({}). This would take {} {} in place of {}",
-                                       limit.title, limit.equation, limit.remedy, text(needed), text(present));
-    if (limit.property == &LimitingProperties::pixel) {
-        sentence += fmt::format(", by {:.3g} times the magnification or by smaller pixels", present / needed);
-    }
-    if (of_aperture && needed > most_in_air) {
-        sentence += ", which no objective in air has";
-    }
-    return sentence + ".";
+    return fmt::format("It lies beyond the limit {} ({}). For the specimen to lie on this limit, the instrument would "
+                       "need {}.",
+                       limit.title, limit.equation(properties), needed_text(properties, limit, wave));
 }
 
 constexpr double wanted_share = 0.9; // of Sq and Sdq, that an instrument should keep
@@ -86,14 +95,38 @@ std::string keeper_sentence(const Capability& capability, const Keeper& keeper) 
         return fmt::format("{}.", kept);
     }
     if (!std::isfinite(keeper.period)) {
-        return fmt::format("{}; not even an S-filter of half a pixel would leave {:.3g} %.", kept,
-                           percent * wanted_share);
+        return fmt::format("{}; not even an S-filter of one pixel would leave {:.3g} %.", kept, percent * wanted_share);
     }
-    return fmt::format("{}. To leave {:.3g} %, waves of {} would have to be resolved, by pixels, with as many in a "
-                       "window, of at most {}, or {:.3g} times the magnification, and by a numerical aperture of at "
-                       "least {:.3g}.",
-                       kept, percent * wanted_share, um_text(keeper.period), um_text(keeper.pixel),
-                       capability.properties.pixel / keeper.pixel, keeper.numerical_aperture);
+    const SurfaceWave shortest{.length = keeper.period, .amplitude = 0};
+    const std::array keys = {"window", "optics"};
+    std::vector<std::string> needed; // of what does not suffice
+    needed.reserve(keys.size());
+    for (const char* key : keys) {
+        const Limit& limit = limit_named(key);
+        if (limit.passed(capability.properties, shortest)) {
+            needed.push_back(needed_text(capability.properties, limit, shortest));
+        }
+    }
+    return fmt::format("{}. To leave {:.3g} %, waves of {} would have to be resolved, by {}.", kept,
+                       percent * wanted_share, um_text(keeper.period), fmt::join(needed, ", and by "));
+}
+
+// How far the specimen lies off the map, if it does: by more than the map's spacing from the nearest sinusoid.
+void add_distance(const Capability& capability, const SurfaceWave& near, std::vector<std::string>& remarks) {
+    const SurfaceWave wave = capability.specimen.value().wave();
+    std::vector<std::string> factors;
+    const auto add = [&](const char* name, double SurfaceWave::*of) {
+        const double factor = near.*of / wave.*of;
+        if (std::max(factor, 1 / factor) > spacing_of_map(capability, of)) {
+            factors.push_back(fmt::format("{:.3g} times its {}", factor, name));
+        }
+    };
+    add("wavelength", &SurfaceWave::length);
+    add("amplitude", &SurfaceWave::amplitude);
+    if (!factors.empty()) {
+        remarks.push_back(fmt::format("The specimen lies off the map: the sinusoid nearest to it has {}.",
+                                      fmt::join(factors, " and ")));
+    }
 }
 
 void add_specimen(const Capability& capability, std::vector<std::string>& remarks) {
@@ -116,6 +149,9 @@ void add_specimen(const Capability& capability, std::vector<std::string>& remark
     for (const Keeper& keeper : keepers_of(capability)) {
         remarks.push_back(keeper_sentence(capability, keeper));
     }
+    remarks.emplace_back(
+        "Sq and Sdq are those of all heights about their least-squares plane, and contain the form of a "
+        "specimen that has one.");
     const CapabilityNode& near = nearest_node(capability, wave);
     remarks.push_back(
         fmt::format("The sinusoid nearest to it on the map, of {}, is {}measured robustly: {:.3g} % of its "
@@ -123,6 +159,7 @@ void add_specimen(const Capability& capability, std::vector<std::string>& remark
                     wave_text(near.wave), near.robust() ? "" : "not ", percent * near.measured_share,
                     std::isfinite(near.bias) ? fmt::format("is off by {:.3g} %", percent * near.bias)
                                              : std::string("is not found")));
+    add_distance(capability, near.wave, remarks);
 }
 
 std::string colour_text(const CapabilityNode& node) {
@@ -132,14 +169,16 @@ std::string colour_text(const CapabilityNode& node) {
     return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 
-// The limit as a line within the axes (um); what lies outside is NaN, which breaks the line.
+// The limit as a line within the axes (um); what lies outside is NaN, which breaks the line. A line without a point has
+// no name, and so is not in the legend.
 report::Curve curve_of(const Limit& limit, const LimitingProperties& properties, const report::Axis& x,
                        const report::Axis& y) {
     constexpr int points = 200;
-    report::Curve curve{.name = limit.title, .points = {}, .spreads = {}};
+    report::Curve curve{.name = "", .points = {}, .spreads = {}};
     if (limit.kind == Limit::Kind::least_length) {
         const double at = limit.bound(properties, 0) * um_per_mm;
         if (at >= x.from && at <= x.to) {
+            curve.name = limit.title;
             curve.points = {{at, y.from}, {at, y.to}};
         }
         return curve;
@@ -148,50 +187,13 @@ report::Curve curve_of(const Limit& limit, const LimitingProperties& properties,
     for (int k = 0; k <= points; ++k) {
         const double length = x.from * std::pow(x.to / x.from, static_cast<double>(k) / points);
         const double amplitude = limit.bound(properties, length / um_per_mm) * um_per_mm;
-        curve.points.emplace_back(length, amplitude >= y.from && amplitude <= y.to ? amplitude : surface::undefined);
+        const bool within = amplitude >= y.from && amplitude <= y.to;
+        curve.points.emplace_back(length, within ? amplitude : surface::undefined);
+        if (within) {
+            curve.name = limit.title;
+        }
     }
     return curve;
-}
-
-// The nodes over wavelength and amplitude: the side of a square shows the share measured, its colour the bias.
-std::string map_svg(const Capability& capability) {
-    constexpr glm::dvec2 size(760, 480), margin(16, 16);
-    constexpr double least_side = 4, more = 18;
-    report::Curve places{.name = "", .points = {}, .spreads = {}};
-    places.points.reserve(capability.nodes.size());
-    for (const CapabilityNode& node : capability.nodes) {
-        places.points.emplace_back(node.wave.length * um_per_mm, node.wave.amplitude * um_per_mm);
-    }
-    std::vector<report::Curve> all = {places};
-    if (capability.specimen) {
-        const SurfaceWave wave = capability.specimen->wave();
-        all.push_back({.name = "", .points = {{wave.length * um_per_mm, wave.amplitude * um_per_mm}}, .spreads = {}});
-    }
-    const report::Axis x = report::axis_over(all, 0, "wavelength / µm", true);
-    const report::Axis y = report::axis_over(all, 1, "amplitude / µm", true);
-    std::vector<report::Curve> curves;
-    curves.reserve(limits().size());
-    for (const Limit& limit : limits()) {
-        curves.push_back(curve_of(limit, capability.properties, x, y));
-    }
-    report::Svg svg;
-    report::draw_chart(svg, margin, size, "Map", x, y, curves);
-    const auto place = [&](glm::dvec2 value) { return report::place_in_chart(margin, size, x, y, value); };
-    for (std::size_t k = 0; k < capability.nodes.size(); ++k) {
-        const CapabilityNode& node = capability.nodes[k];
-        const double side = least_side + more * std::sqrt(node.measured_share);
-        svg.rectangle(place(places.points[k]) - glm::dvec2(0.5 * side), glm::dvec2(side),
-                      fmt::format("fill=\"{}\" stroke=\"#333333\" stroke-width=\"{}\"", colour_text(node),
-                                  node.robust() ? 2.5 : 0.6));
-    }
-    if (capability.specimen) {
-        const glm::dvec2 at = place(all.back().points.front());
-        for (const glm::dvec2 half : {glm::dvec2(9, 9), glm::dvec2(9, -9)}) {
-            svg.line(at - half, at + half, "stroke=\"#000000\" stroke-width=\"3\"");
-        }
-        svg.text(at + glm::dvec2(13, 4), "specimen", "font-weight=\"bold\"");
-    }
-    return svg.document(size + 2.0 * margin, "Capability of the instrument over wavelength and amplitude");
 }
 
 void add_nodes(report::Page& page, const Capability& capability) {
@@ -216,13 +218,16 @@ void add_limits(report::Page& page, const Capability& capability) {
     std::vector<std::vector<std::string>> table{{"limit", "equation", "bound"}};
     const double window = capability.properties.window;
     for (const Limit& limit : limits()) {
-        const std::string at = um_text(limit.bound(capability.properties, window));
-        const bool of_length = limit.kind == Limit::Kind::least_length;
-        table.push_back({limit.title, limit.equation,
-                         of_length
-                             ? fmt::format("λ ≥ {}", at)
-                             : fmt::format("A {} {} at λ = {}", limit.kind == Limit::Kind::least_amplitude ? "≥" : "≤",
-                                           at, um_text(window))});
+        const double bound = limit.bound(capability.properties, window);
+        const std::string at = um_text(bound);
+        std::string text = at; // "–" if it is not known
+        if (std::isfinite(bound)) {
+            text = limit.kind == Limit::Kind::least_length
+                       ? fmt::format("λ ≥ {}", at)
+                       : fmt::format("A {} {} at λ = {}", limit.kind == Limit::Kind::least_amplitude ? "≥" : "≤", at,
+                                     um_text(window));
+        }
+        table.push_back({limit.title, limit.equation(capability.properties), text});
     }
     page.table("Limits in closed form", table);
 }
@@ -251,8 +256,10 @@ std::vector<std::string> remarks_of(const Capability& capability) {
         remarks.emplace_back("No point of the flat is measured: the noise, and its limit, are not known.");
     }
     if (capability.instrument.conditions.small) {
-        const ImageSize pixels = capability.instrument.conditions.pixels;
-        remarks.push_back(fmt::format("Measured on {} x {} pixels.", pixels.columns, pixels.rows));
+        const Conditions& conditions = capability.instrument.conditions;
+        remarks.push_back(fmt::format("With --small the map was measured on {} x {} pixels and {}; the limits of scan "
+                                      "and field are those of this part.",
+                                      conditions.pixels.columns, conditions.pixels.rows, scan_text(conditions)));
     }
     return remarks;
 }
@@ -273,6 +280,7 @@ nlohmann::ordered_json capability_json(const Capability& capability) {
     json["properties"] = {{"pixel_um", own.pixel * um_per_mm},
                           {"window_um", own.window * um_per_mm},
                           {"numerical_aperture", own.numerical_aperture},
+                          {"object_index", own.object_index},
                           {"focus_curve_deviation_um", own.curve_deviation * um_per_mm},
                           {"scan_range_um", own.range * um_per_mm},
                           {"noise_um", own.noise * um_per_mm}};
@@ -282,7 +290,7 @@ nlohmann::ordered_json capability_json(const Capability& capability) {
         const bool of_length = limit.kind == Limit::Kind::least_length;
         json["limits"].push_back({{"key", limit.key},
                                   {"title", limit.title},
-                                  {"equation", limit.equation},
+                                  {"equation", limit.equation(own)},
                                   {"wavelength_um", of_length ? Json(bound) : Json()},
                                   {"amplitude_at_one_window_um", of_length ? Json() : Json(bound)}});
     }
@@ -331,6 +339,48 @@ nlohmann::ordered_json capability_json(const Capability& capability) {
     return json;
 }
 
+// The nodes over wavelength and amplitude: the side of a square shows the share measured, its colour the bias.
+std::string capability_map(const Capability& capability) {
+    using namespace of_capability_documents;
+    constexpr glm::dvec2 size(760, 480), margin(16, 16);
+    constexpr double least_side = 4, more = 18;
+    report::Curve places{.name = "", .points = {}, .spreads = {}};
+    places.points.reserve(capability.nodes.size());
+    for (const CapabilityNode& node : capability.nodes) {
+        places.points.emplace_back(node.wave.length * um_per_mm, node.wave.amplitude * um_per_mm);
+    }
+    std::vector<report::Curve> all = {places};
+    if (capability.specimen) {
+        const SurfaceWave wave = capability.specimen->wave();
+        all.push_back({.name = "", .points = {{wave.length * um_per_mm, wave.amplitude * um_per_mm}}, .spreads = {}});
+    }
+    const report::Axis x = report::axis_over(all, 0, "wavelength / µm", true);
+    const report::Axis y = report::axis_over(all, 1, "amplitude / µm", true);
+    std::vector<report::Curve> curves;
+    curves.reserve(limits().size());
+    for (const Limit& limit : limits()) {
+        curves.push_back(curve_of(limit, capability.properties, x, y));
+    }
+    report::Svg svg;
+    report::draw_chart(svg, margin, size, "Map", x, y, curves);
+    const auto place = [&](glm::dvec2 value) { return report::place_in_chart(margin, size, x, y, value); };
+    for (std::size_t k = 0; k < capability.nodes.size(); ++k) {
+        const CapabilityNode& node = capability.nodes[k];
+        const double side = least_side + more * std::sqrt(node.measured_share);
+        svg.rectangle(place(places.points[k]) - glm::dvec2(0.5 * side), glm::dvec2(side),
+                      fmt::format("fill=\"{}\" stroke=\"#333333\" stroke-width=\"{}\"", colour_text(node),
+                                  node.robust() ? 2.5 : 0.6));
+    }
+    if (capability.specimen) {
+        const glm::dvec2 at = place(all.back().points.front());
+        for (const glm::dvec2 half : {glm::dvec2(9, 9), glm::dvec2(9, -9)}) {
+            svg.line(at - half, at + half, "stroke=\"#000000\" stroke-width=\"3\"");
+        }
+        svg.text(at + glm::dvec2(13, 4), "specimen", "font-weight=\"bold\"");
+    }
+    return svg.document(size + 2.0 * margin, "Capability of the instrument over wavelength and amplitude");
+}
+
 std::string capability_page(const Capability& capability) {
     using namespace of_capability_documents;
     report::Page page;
@@ -339,7 +389,7 @@ std::string capability_page(const Capability& capability) {
     for (const std::string& remark : remarks_of(capability)) {
         page.paragraph(remark);
     }
-    page.picture(map_svg(capability), "Sinusoids over wavelength and amplitude, and the limits in closed form");
+    page.picture(capability_map(capability), "Sinusoids over wavelength and amplitude, and the limits in closed form");
     page.paragraph(
         "The side of a square grows with the share of points measured. Its colour is the bias of the "
         "amplitude: white none, blue too small, red too large, full at 50 %, yellow not found. A thick edge: "
@@ -349,7 +399,8 @@ std::string capability_page(const Capability& capability) {
     page.section("limits", "Limits");
     page.paragraph(
         "A is the amplitude, λ the wavelength, W the focus window, w the standard deviation of a focus curve, "
-        "R the scan. The limit of a mirror holds for smooth surfaces that reflect: light that is scattered "
+        "R the scan, n the index of the medium over the specimen. The limit of a mirror holds for smooth surfaces that "
+        "reflect: light that is scattered "
         "comes back from steeper slopes, as from these printed standards.");
     add_limits(page, capability);
     page.section("nodes", "Sinusoids");
@@ -359,6 +410,7 @@ std::string capability_page(const Capability& capability) {
     page.picture(capability.instrument.layout, "The instrument to scale, with rays");
     auto table = conditions_table(capability.instrument.conditions);
     table.push_back({"numerical aperture", report::reader_number(capability.properties.numerical_aperture)});
+    table.push_back({"index over the specimen", report::reader_number(capability.properties.object_index)});
     table.push_back({"noise of a height / nm", reader_figure(capability.properties.noise * nm_per_mm)});
     table.push_back({"device", fmt::format("{}", fmt::join(capability.devices, "; "))});
     table.push_back({"first seed", fmt::format("{}", capability.instrument.conditions.seed)});

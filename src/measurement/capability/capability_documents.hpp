@@ -12,6 +12,9 @@ namespace vkfv::measurement {
 
 nlohmann::ordered_json capability_json(const Capability& capability);
 
+// The map as an SVG: the sinusoids, the limits that cross them, and the specimen.
+std::string capability_map(const Capability& capability);
+
 // capability.html: the map with the limits, the specimen, and the table of the nodes.
 std::string capability_page(const Capability& capability);
 

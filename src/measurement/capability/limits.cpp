@@ -1,6 +1,7 @@
 #include "measurement/capability/limits.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "measurement/judgement/expectation.hpp"
 
 #include <fmt/format.h>
 
@@ -20,8 +21,18 @@ using Properties = LimitingProperties;
 
 constexpr double noises = 3; // of the limit of detection
 
-double slope_of_aperture(double numerical_aperture) {
-    return std::tan(std::asin(std::min(numerical_aperture, 1.0)));
+// The tangent of the angle between the axis and the rim of the cone of light.
+double slope_of_cone(const Properties& own) {
+    return std::tan(std::asin(std::min(own.numerical_aperture / own.object_index, 1.0)));
+}
+
+bool is_box(const Properties& own) {
+    return own.window_shape == topography::WindowShape::box;
+}
+
+// The standard deviation (mm) of the places in a window of this width (mm) along a line.
+double deviation_in_window(topography::WindowShape shape, double width) {
+    return shape == topography::WindowShape::box ? width / std::sqrt(12.0) : width / 5;
 }
 
 } // namespace of_limits
@@ -35,13 +46,17 @@ double lost_period(const LimitingProperties& properties) {
     return std::max(properties.window_period, properties.resolution);
 }
 
-LimitingProperties limiting_properties(const Conditions& conditions, double numerical_aperture, double window_period,
+LimitingProperties limiting_properties(const TestedInstrument& instrument, topography::WindowShape shape,
                                        double noise) {
+    const Conditions& conditions = instrument.conditions;
     return {.pixel = conditions.pitch,
             .window = conditions.window,
-            .window_period = window_period,
+            .window_shape = shape,
+            .window_period = period_of_half_in_window(shape, conditions.window),
+            .window_deviation = of_limits::deviation_in_window(shape, conditions.window),
             .resolution = conditions.resolution,
-            .numerical_aperture = numerical_aperture,
+            .numerical_aperture = instrument.numerical_aperture,
+            .object_index = instrument.object_index,
             .curve_deviation = conditions.curve_deviation,
             .range = conditions.range,
             .usable_range = conditions.usable_range(),
@@ -66,9 +81,9 @@ const std::array<Limit, 6>& limits() {
     static const std::array<Limit, 6> all = {{
         {.key = "window",
          .title = "focus window",
-         .equation = "transfer of the mean over the window 1/2",
          .needed_key = "pixel_um",
          .remedy = "pixels, with as many in a window, of at most",
+         .equation = [](const Properties& own) { return is_box(own) ? "λ = 1.66 W" : "λ = 1.07 W"; },
          .kind = Kind::least_length,
          .property = &Properties::pixel,
          .bound = [](const Properties& own, double) { return own.window_period; },
@@ -76,52 +91,54 @@ const std::array<Limit, 6>& limits() {
                       const SurfaceWave& wave) { return own.pixel * wave.length / own.window_period; }},
         {.key = "optics",
          .title = "optical resolution",
-         .equation = "λ = 0.61 λ_light / NA",
          .needed_key = "numerical_aperture",
          .remedy = "a numerical aperture of at least",
+         .equation = [](const Properties&) { return "λ = 0.61 λ_light / NA"; },
          .kind = Kind::least_length,
          .property = &Properties::numerical_aperture,
          .bound = [](const Properties& own, double) { return own.resolution; },
          .needed = [](const Properties& own,
                       const SurfaceWave& wave) { return own.numerical_aperture * own.resolution / wave.length; }},
         {.key = "slope",
-         .title = "aperture of a mirror",
-         .equation = "2 π A / λ = tan(asin NA), smooth surfaces alone",
+         .title = "slope of a mirror",
          .needed_key = "numerical_aperture",
-         .remedy = "for a smooth surface, which this limit is for, a numerical aperture of at least",
+         .remedy = "a numerical aperture of at least",
+         .equation = [](const Properties&) { return "for smooth surfaces only: 2 π A / λ = tan(asin(NA / n))"; },
          .kind = Kind::largest_amplitude,
          .property = &Properties::numerical_aperture,
-         .bound = [](const Properties& own,
-                     double length) { return length * slope_of_aperture(own.numerical_aperture) / (2 * pi); },
-         .needed = [](const Properties&,
-                      const SurfaceWave& wave) { return std::sin(std::atan(wave.steepest_slope())); }},
+         .bound = [](const Properties& own, double length) { return length * slope_of_cone(own) / (2 * pi); },
+         .needed =
+             [](const Properties& own, const SurfaceWave& wave) {
+                 return own.object_index * std::sin(std::atan(wave.steepest_slope()));
+             }},
         {.key = "relief",
          .title = "relief within the window",
-         .equation = "2 π A W / (λ √12) = w",
          .needed_key = "window_um",
          .remedy = "with the same focus curve, a window of at most",
+         .equation =
+             [](const Properties& own) { return is_box(own) ? "2 π A W / (λ √12) = w" : "2 π A W / (5 λ) = w"; },
          .kind = Kind::largest_amplitude,
          .property = &Properties::window,
          .bound = [](const Properties& own,
-                     double length) { return std::sqrt(12.0) * own.curve_deviation * length / (2 * pi * own.window); },
+                     double length) { return own.curve_deviation * length / (2 * pi * own.window_deviation); },
          .needed =
              [](const Properties& own, const SurfaceWave& wave) {
-                 return std::sqrt(12.0) * own.curve_deviation / wave.steepest_slope();
+                 return own.window * own.curve_deviation / (own.window_deviation * wave.steepest_slope());
              }},
         {.key = "noise",
          .title = "measurement noise",
-         .equation = "A = 3 times the noise of a height",
          .needed_key = "noise_um",
          .remedy = "a noise of a height of at most",
+         .equation = [](const Properties&) { return "A = 3 times the noise of a height"; },
          .kind = Kind::least_amplitude,
          .property = &Properties::noise,
          .bound = [](const Properties& own, double) { return noises * own.noise; },
          .needed = [](const Properties&, const SurfaceWave& wave) { return wave.amplitude / noises; }},
         {.key = "scan",
          .title = "scan",
-         .equation = "2 A = R − 4 w",
          .needed_key = "scan_range_um",
          .remedy = "a scan of at least",
+         .equation = [](const Properties&) { return "2 A = R − 4 w"; },
          .kind = Kind::largest_amplitude,
          .property = &Properties::range,
          .bound = [](const Properties& own, double) { return 0.5 * own.usable_range; },

@@ -20,8 +20,8 @@ double longest_of(const Conditions& conditions) {
     return std::min(longest_windows * conditions.window, 0.5 * conditions.field());
 }
 
-double four_digits(double value) {
-    return std::stod(fmt::format("{:.4g}", value));
+double rounded(double value, int digits) {
+    return std::stod(fmt::format("{:.{}g}", value, digits));
 }
 
 // Numbers from first to last in equal ratios.
@@ -29,7 +29,7 @@ std::vector<double> in_ratios(double first, double last, int count) {
     std::vector<double> values;
     values.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k) {
-        values.push_back(four_digits(first * std::pow(last / first, static_cast<double>(k) / (count - 1))));
+        values.push_back(rounded(first * std::pow(last / first, static_cast<double>(k) / (count - 1)), 4));
     }
     return values;
 }
@@ -66,7 +66,9 @@ void require_room_for_waves(const Conditions& conditions, const std::filesystem:
 std::vector<SurfaceWave> waves_of_map(const Conditions& conditions, double noise, int wavelengths, int amplitudes) {
     constexpr double least_share = 1e-3, most_share = 0.1, of_scan = 0.25;
     const double largest = std::min(of_scan * conditions.range, 0.5 * conditions.usable_range());
-    const double smallest = std::clamp(std::isfinite(noise) ? noise : 0.0, least_share * largest, most_share * largest);
+    // Folders are named by the amplitudes, and the last digits of an estimated noise may differ between machines.
+    const double smallest = of_nodes::rounded(
+        std::clamp(std::isfinite(noise) ? noise : 0.0, least_share * largest, most_share * largest), 2);
     std::vector<SurfaceWave> waves;
     waves.reserve(static_cast<std::size_t>(wavelengths) * static_cast<std::size_t>(amplitudes));
     for (const double length : of_nodes::in_ratios(conditions.window, of_nodes::longest_of(conditions), wavelengths)) {

@@ -16,7 +16,7 @@ struct CapabilityNode {
     std::string stack;                            // its folder, relative to the map's
     double measured_share = 0;                    // of the points
     double bias = surface::undefined;             // measured over true amplitude, minus 1
-    double bias_uncertainty = surface::undefined; // its standard uncertainty, by the scatter of the heights
+    double bias_uncertainty = surface::undefined; // its standard uncertainty, by uncertainty_of() the amplitude
     double rms_error = surface::undefined;        // of the heights, their median deviation taken off
     double noise = surface::undefined;            // median of the heights' stated noise
     double uncertainty = surface::undefined;      // median of their stated standard uncertainty
@@ -33,8 +33,9 @@ struct CapabilityNode {
 void require_room_for_waves(const Conditions& conditions, const std::filesystem::path& file);
 
 // So many wavelengths from one focus window to 30 or half of the field, times so many amplitudes from the noise of a
-// height to a quarter of the scan, at least two each, both in equal ratios and to four digits. noise: mm; within a
-// thousandth and a tenth of the largest amplitude, and a thousandth if it is not known (NaN).
+// height to a quarter of the scan, at least two each, both in equal ratios and to four digits. noise: mm; the least
+// amplitude is it to two digits, within a thousandth and a tenth of the largest amplitude, and a thousandth if it is
+// not known (NaN).
 std::vector<SurfaceWave> waves_of_map(const Conditions& conditions, double noise, int wavelengths, int amplitudes);
 
 // The trial of a flat with the waves' print, which shows the noise.

@@ -44,8 +44,9 @@ double RoughSpecimen::period_keeping(double share, double KeptRoughness::*of) co
 }
 
 std::optional<RoughSpecimen> roughness_of(const surface::HeightMap& heights) {
-    constexpr double flat = 1e-6; // root mean square slope below which only rounding is left of a plane
-    constexpr double ratio = 1.4; // of the periods that are tried, from two points to half of the map
+    constexpr double flat = 1e-6;      // root mean square slope below which only rounding is left of a plane
+    constexpr double ratio = 1.4;      // of the periods that are tried, from four points to half of the map
+    constexpr double least_points = 4; // the sampled S-filter of fewer points is not that of its nesting index
     const auto levelled = surface::remove_plane(heights, surface::least_squares_plane(heights));
     RoughSpecimen rough{.sq = surface::height_parameters(levelled).sq,
                         .rms_slope = surface::hybrid_parameters(levelled).sdq};
@@ -53,7 +54,8 @@ std::optional<RoughSpecimen> roughness_of(const surface::HeightMap& heights) {
         return std::nullopt;
     }
     const double side = std::min(heights.height.columns * heights.pitch_x, heights.height.rows * heights.pitch_y);
-    for (double period = 2 * heights.pitch_x; rough.kept.size() < 2 || period <= 0.5 * side; period *= ratio) {
+    for (double period = least_points * heights.pitch_x; rough.kept.size() < 2 || period <= 0.5 * side;
+         period *= ratio) {
         const auto filtered = surface::gaussian_low_pass(levelled, period);
         rough.kept.push_back({.period = period,
                               .sq = surface::height_parameters(filtered).sq / rough.sq,

@@ -19,9 +19,10 @@ struct KeptRoughness {
 };
 
 struct RoughSpecimen {
-    double sq = 0;                     // mm, root mean square height about the least-squares plane
-    double rms_slope = 0;              // Sdq, dimensionless
-    std::vector<KeptRoughness> kept{}; // by ascending periods, at least two
+    double sq = 0;        // mm, root mean square height about the least-squares plane
+    double rms_slope = 0; // Sdq, dimensionless
+    // By ascending periods from four points on, at least two; weights of shorter filters are too few for their form.
+    std::vector<KeptRoughness> kept{};
 
     // What is left for a period (mm), linear in its logarithm; beyond the periods above that at the nearest.
     KeptRoughness kept_by(double period) const;
@@ -37,9 +38,10 @@ struct RoughSpecimen {
 // The roughness of these heights; NaN at points that have none. None for a flat surface.
 std::optional<RoughSpecimen> roughness_of(const surface::HeightMap& heights);
 
-// The roughness of the configuration's specimen, at points a quarter of a pixel apart in the middle 256 pixels at most.
-// None for a standard with dimensions, whose relief is no roughness, and for a flat surface. pixel: distance of the
-// pixels on the specimen, mm. Throws InputError.
+// The roughness of a specimen without a nominal dimension, at points a quarter of a pixel apart in the middle 256
+// pixels at most. Images, meshes, points and measured files count too; Sq and Sdq then contain their form. None for a
+// standard with dimensions, whose relief is no roughness, and for a flat surface. pixel: distance of the pixels on the
+// specimen, mm. Throws InputError.
 std::optional<RoughSpecimen> rough_specimen(const Configuration& configuration, double pixel);
 
 } // namespace vkfv::measurement
