@@ -30,16 +30,18 @@ Command calibrate_command() {
             .summary = "The metrological characteristics of the instrument by ISO 25178-600, each measured on virtual "
                        "standards in place of the specimen, as a certificate; continues an interrupted one",
             .operands = {{"C.toml", "Configuration of a stack", into(&CommandOptions::file)}},
-            .options = together({configuration_options(),
-                                 {{.name = "--only",
-                                   .value = "NAMES",
-                                   .description = "Characteristics, parted by commas; all if not given",
-                                   .target = into(&CalibrateOptions::only),
-                                   .choices = names_of_characteristics(),
-                                   .list = true},
-                                  small_option(),
-                                  out_option("Output folder"),
-                                  json_option()}}),
+            .options = together(
+                {configuration_options(),
+                 {{.name = "--only",
+                   .value = "NAMES",
+                   .description = "Characteristics, parted by commas; all if not given",
+                   .target = into(&CalibrateOptions::only),
+                   .choices = names_of_characteristics(),
+                   .list = true},
+                  small_option("The middle 160 pixels (320 for lateral characteristics), at most 31 images, and "
+                               "fewer measurements: for a first look"),
+                  out_option("Output folder"),
+                  json_option()}}),
             .run = run_calibrate,
             .example = "vkfv calibrate assets/stacks/own_microscope.toml --small --only N_M,alpha_z"};
 }

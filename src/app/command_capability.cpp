@@ -24,22 +24,23 @@ Command capability_command() {
                        "specimen, as a map with its limits and the place of a rough specimen; continues an "
                        "interrupted one",
             .operands = {{"C.toml", "Configuration of a stack", into(&CommandOptions::file)}},
-            .options =
-                together({configuration_options(),
-                          {{.name = "--wavelengths",
-                            .value = "N",
-                            .description = "Wavelengths, from a focus window to 30 of them (default: 7, small: 3)",
-                            .target = into(&CapabilityOptions::wavelengths),
-                            .range = {2, 100}},
-                           {.name = "--amplitudes",
-                            .value = "N",
-                            .description = "Amplitudes, from the noise to a quarter of the scan (default: 6, "
-                                           "small: 3)",
-                            .target = into(&CapabilityOptions::amplitudes),
-                            .range = {2, 100}},
-                           small_option(),
-                           out_option("Output folder"),
-                           json_option()}}),
+            .options = together(
+                {configuration_options(),
+                 {{.name = "--wavelengths",
+                   .value = "N",
+                   .description = "Wavelengths, from one to 30 focus windows, at most half of the field (default: 7, "
+                                  "small: 3)",
+                   .target = into(&CapabilityOptions::wavelengths),
+                   .range = {2, 100}},
+                  {.name = "--amplitudes",
+                   .value = "N",
+                   .description = "Amplitudes, from the noise to a quarter of the scan (default: 6, "
+                                  "small: 3)",
+                   .target = into(&CapabilityOptions::amplitudes),
+                   .range = {2, 100}},
+                  small_option("The middle 160 pixels, at most 31 images, and fewer sinusoids: for a first look"),
+                  out_option("Output folder"),
+                  json_option()}}),
             .run = run_capability,
             .example = "vkfv capability assets/stacks/paper_air.toml --small"};
 }

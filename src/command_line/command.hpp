@@ -155,7 +155,7 @@ const Command& command_named(const std::string& name);
 std::vector<Option> configuration_options(); // override values of the configuration
 Option out_option(std::string description);
 Option json_option();
-Option small_option();
+Option small_option(std::string description);
 Option markdown_option();
 Option pitch_option();              // a PixelPitch
 Option accept_checksum_option();    // an AcceptChecksum

@@ -117,12 +117,9 @@ Option json_option() {
             .foremost = "check"};
 }
 
-Option small_option() {
-    return {.name = "--small",
-            .value = "",
-            .description = "The middle 160 pixels (320 for lateral characteristics), at most 31 images, and fewer "
-                           "measurements: for a first look",
-            .target = into(&CommandOptions::small)};
+Option small_option(std::string description) {
+    return {
+        .name = "--small", .value = "", .description = std::move(description), .target = into(&CommandOptions::small)};
 }
 
 Option markdown_option() {
