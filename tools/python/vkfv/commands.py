@@ -158,7 +158,8 @@ def capability(
     on_event: Callable[[Event], None] | None = None,
     **overrides,
 ) -> Capability:
-    """Measures which sinusoids an instrument measures (`vkfv capability`), or continues.
+    """Maps which sinusoids an instrument measures, and tells what keeps it from measuring a rough specimen (`vkfv capability`),
+    or continues.
 
     wavelengths, amplitudes: their numbers, at least 2; None: 7 and 6. small: a part of the field and of the scan, with 3 and 3.
     """
