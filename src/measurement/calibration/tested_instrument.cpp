@@ -50,7 +50,7 @@ std::vector<TomlOverride> small_scan(const Configuration& base) {
     if (positions.size() <= small_images) {
         return {};
     }
-    constexpr double sampling = 0.5; // of a focus curve's standard deviation: its peak is then found as before
+    constexpr double sampling = 0.5; // in standard deviations of a focus curve, whose top then holds several images
     const double range = positions.back() - positions.front(), step = positions[1] - positions[0];
     const double deviation = focus_curve_deviation(base, assemble_for_figures(base).first_order);
     const double wider = std::clamp(range / (small_images - 1), step, std::max(step, sampling * deviation));
