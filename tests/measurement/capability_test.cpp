@@ -231,6 +231,8 @@ TEST(SmallInstrument, IsThinnedWhereThatSufficesAndElseCut) {
     EXPECT_NEAR(cut.conditions.range, 30 * cut.conditions.step, 1e-9);
     EXPECT_NEAR(cut.conditions.middle(), 0.150, 1e-9);
     EXPECT_EQ(read(cut).topography.peak_range_steps, std::lround(40 * 0.0005 / cut.conditions.step));
+    // The upper end of this scan is found as -5e-18 mm, which is no length that a key takes.
+    EXPECT_NEAR(read(tested("-30.3", "0.0", "0.3")).scan.value().positions().back(), 0, 1e-12);
     // 51 images whose steps are larger than that keep their steps.
     const auto coarse = tested("-100.0", "150.0", "5.0");
     EXPECT_NEAR(coarse.conditions.step, 0.005, 1e-9);
