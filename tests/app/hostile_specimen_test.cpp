@@ -17,8 +17,8 @@ using testing::Not;
 constexpr const char* step = "kind = \"step\"\nsize_mm = 0.2\nheight_um = 2.0\n";
 const std::string roughness = "[specimen.roughness]\nnoise_um = 0.1\nkernel_um = 1.0\npitch_um = 1.0\nseed = 7\n";
 
-ProgramResult checked(const std::string& configuration,
-                      const std::vector<std::string>& arguments = {"--check", "c.toml"}) {
+ProgramResult checked_program(const std::string& configuration,
+                              const std::vector<std::string>& arguments = {"--check", "c.toml"}) {
     const auto folder = fresh_folder("hostile");
     write_file(folder / "c.toml", configuration);
     return run_program(arguments, folder);
@@ -86,7 +86,7 @@ TEST(HostileSpecimen, GridsAreBoundedBeforeTheyAreMade) {
 
 TEST(HostileSpecimen, SurfacesWithoutFacetsNeedNoPitch) {
     const std::string bare = replaced(small_configuration, roughness, "");
-    const auto with = [&](const std::string& specimen) { return checked(replaced(bare, step, specimen)); };
+    const auto with = [&](const std::string& specimen) { return checked_program(replaced(bare, step, specimen)); };
     EXPECT_EQ(with("kind = \"plane\"\nsize_mm = 20\nrepresentation = \"analytic\"\n").exit_code, 0);
     const auto facets = with("kind = \"plane\"\nsize_mm = 20\n");
     EXPECT_EQ(facets.exit_code, 2);
@@ -134,7 +134,7 @@ TEST(HostileSpecimen, LightThatGoesAstrayIsToldOf) {
 TEST(HostileSpecimen, LightInItsPlaceIsNotToldOf) {
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"--check", "c.toml"}, {"--image", "c.toml", "--z", "0", "--device", "host"}}) {
-        const auto result = checked(small_configuration, arguments);
+        const auto result = checked_program(small_configuration, arguments);
         EXPECT_EQ(result.exit_code, 0) << result.standard_error;
         EXPECT_THAT(result.standard_output + result.standard_error, Not(HasSubstr("arrived at the detector")));
         EXPECT_THAT(result.standard_output + result.standard_error, Not(HasSubstr("falls beside the specimen")));
