@@ -49,11 +49,12 @@ std::string standard_of(const Conditions& conditions, const std::string& kind, c
 }
 
 Groove groove_of(const Conditions& conditions, double depth, double field_share) {
-    constexpr double windows = 12, thirds = 3;
-    const double half_window = 0.5 * conditions.window, slope = conditions.cone_slope();
-    const double wished = std::max(windows * conditions.window, thirds * (depth * slope + half_window));
+    constexpr double windows = 12, thirds = 3, deviations = 2;
+    const double slope = conditions.cone_slope();
+    const double blurred = 0.5 * conditions.window + deviations * conditions.curve_deviation * slope;
+    const double wished = std::max(windows * conditions.window, thirds * (depth * slope + blurred));
     const double width = std::min(wished, field_share * conditions.field());
-    const double clear = width / thirds - half_window; // from the edge of the middle third to the wall
+    const double clear = width / thirds - blurred; // from what the middle third sees to the wall
     return {.width = width, .depth = of_standards::is_less(clear, depth * slope) ? clear / slope : depth};
 }
 

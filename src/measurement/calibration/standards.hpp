@@ -29,8 +29,10 @@ struct Groove {
     double width = 0, depth = 0;
 };
 // The groove of this depth that is at least twelve windows wide, and wide enough for the middle third of its bottom,
-// which ISO 5436-1 evaluates, to receive the whole light cone past the walls: 3 (depth tan(theta) + W / 2). Where the
-// field does not hold it, it is as wide as a share `field_share` of the field, and as shallow as this width asks; the
+// which ISO 5436-1 evaluates, to be seen by whole light cones past the walls, also while it is out of focus by two
+// standard deviations of a focus curve, when a window sees the bottom around it: 3 ((depth + 2 w) tan(theta) + W / 2).
+// Otherwise less light comes from below the focus than from above, and the bottom is found too high. Where the field
+// does not hold it, the groove is as wide as a share `field_share` of the field, and as shallow as this width asks; the
 // depth is then at most 0 if no groove fits.
 Groove groove_of(const Conditions& conditions, double depth, double field_share);
 
