@@ -466,7 +466,7 @@ bool has_nan(const std::string& text) {
                                [&](const char* number) { return text.find(number) != std::string::npos; });
 }
 
-// What is not known is null in the JSON and a dash on the page.
+// A figure that is not known is null in the JSON and a dash on the page.
 TEST(CapabilityDocuments, TellWhatIsNotKnown) {
     auto capability = rough_capability(1e-3, 1);
     capability.properties.noise = surface::undefined;

@@ -36,7 +36,7 @@ inline constexpr const char* smooth_standards =
     "The standards are smooth and printed: waves filter their intensity, so that speckle, phase contrast of relief and "
     "diffraction at edges are not modelled.";
 
-// What of the scan a measurement took: "33 µm of the scan, in steps of 1.1 µm".
+// The part of the scan that a measurement covered, in words: "33 µm of the scan, in steps of 1.1 µm".
 std::string scan_text(const Conditions& conditions);
 
 // The conditions of the measurements as the rows of a table, with its head.

@@ -14,7 +14,8 @@ namespace vkfv::measurement {
 namespace {
 namespace of_standards { // files of a unity build share the unnamed namespace
 
-// Of two lengths that rounding alone tells apart, neither counts as shorter.
+// True if a length is shorter than another by more than rounding: a groove that is as deep as was asked, but for the
+// last digit, must not be told to be shallower.
 bool is_less(double length, double than) {
     constexpr double slack = 1e-9;
     return length < (1 - slack) * than;

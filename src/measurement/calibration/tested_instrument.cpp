@@ -59,11 +59,8 @@ std::vector<TomlOverride> small_scan(const Configuration& base) {
     const auto override_of = [](const std::string& key, double value) {
         return TomlOverride{key, fmt::format("{:.12g}", value), origin_of_standards};
     };
-    const auto end_of = [&](const std::string& key, double end) { // a sum that should be 0 leaves less than keys take
-        return override_of(key, std::abs(end) < 1e-6 * step ? 0 : end * um_per_mm);
-    };
-    std::vector<TomlOverride> overrides = {end_of("scan.z_start_um", middle - half),
-                                           end_of("scan.z_stop_um", middle + half),
+    std::vector<TomlOverride> overrides = {{"scan.z_start_um", um(middle - half), origin_of_standards},
+                                           {"scan.z_stop_um", um(middle + half), origin_of_standards},
                                            override_of("scan.z_step_um", wider * um_per_mm)};
     if (const auto smoothing = base.topography.smoothing_steps) {
         overrides.push_back(override_of("topography.smoothing_steps", *smoothing * step / wider));

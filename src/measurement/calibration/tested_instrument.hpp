@@ -32,7 +32,8 @@ TestedInstrument tested_instrument(const Configuration& base, TestedField field)
 Configuration with_standard(const TestedInstrument& instrument, const std::filesystem::path& file, const Trial& trial,
                             const std::filesystem::path& folder);
 
-// What a stack of a standard measured. name: of the trial. The evaluation must have a truth.
+// The heights, uncertainties and dimensions that the evaluation of a stack of a standard holds, under the name of its
+// trial. Throws std::bad_optional_access if the evaluation has no truth.
 TrialResult result_of(const std::string& name, const Evaluation& evaluation);
 
 } // namespace vkfv::measurement

@@ -54,7 +54,7 @@ std::string needed_text(const LimitingProperties& properties, const Limit& limit
     return words;
 }
 
-// What of the instrument would have to change for the specimen to lie on the limit.
+// A sentence that names the limit and the property of the instrument with which the specimen would lie on it.
 std::string remedy_sentence(const LimitingProperties& properties, const Limit& limit, const SurfaceWave& wave) {
     return fmt::format("It lies beyond the limit {} ({}). For the specimen to lie on this limit, the instrument would "
                        "need {}.",

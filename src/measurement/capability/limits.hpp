@@ -19,7 +19,7 @@ struct SurfaceWave {
     double steepest_slope() const; // 2 pi A / lambda, dimensionless
 };
 
-// What the limits follow from. Lengths in mm.
+// The properties of an instrument that its limits are computed from. Lengths are in mm.
 struct LimitingProperties {
     double pixel = 0;  // distance of the pixels on the specimen
     double window = 0; // width of the focus window

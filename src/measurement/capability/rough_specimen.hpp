@@ -10,8 +10,8 @@
 
 namespace vkfv::measurement {
 
-// What is left of a roughness by an S-filter (ISO 16610-61) of this nesting index, at which half of a wave's amplitude
-// is left. A focus window and an optical resolution take short waves off in much the same way.
+// The shares of Sq and Sdq that an S-filter (ISO 16610-61) leaves, which halves waves as long as its nesting index. It
+// stands for a focus window and an optical resolution, which take short waves off in much the same way.
 struct KeptRoughness {
     double period = 0;    // mm, the nesting index
     double sq = 0;        // Sq over that of the whole surface
@@ -24,7 +24,8 @@ struct RoughSpecimen {
     // By ascending periods from four points on, at least two; weights of shorter filters are too few for their form.
     std::vector<KeptRoughness> kept{};
 
-    // What is left for a period (mm), linear in its logarithm; beyond the periods above that at the nearest.
+    // The shares that an S-filter of this nesting index (mm) leaves, interpolated linearly in its logarithm. An index
+    // outside the periods of `kept` has the shares of the nearest.
     KeptRoughness kept_by(double period) const;
     // The longest period (mm) that keeps this share of Sq or Sdq; NaN where the shortest period does not.
     double period_keeping(double share, double KeptRoughness::*of) const;
