@@ -1,6 +1,6 @@
 // A certificate as a digital calibration certificate holds the figures of certificate.json, says everywhere that it is
-// of a simulated instrument, and has the elements of version 3.3.0 of the schema in their order. What the schema asks
-// for stands here once more, in words that share nothing with the writer.
+// of a simulated instrument, and has the elements of version 3.3.0 of the schema in their order. The order that
+// the schema asks for stands here once more, so that it shares nothing with the writer.
 #include "measurement/calibration/digital_certificate.hpp"
 
 #include <gmock/gmock.h>
@@ -34,7 +34,7 @@ CertificateFigure made_figure(const std::string& key, const std::string& unit, d
             .degrees_of_freedom = degrees_of_freedom};
 }
 
-// Figures of every unit, with and without uncertainty, one not determined and a characteristic without any.
+// It has figures of every unit, with and without uncertainty, one not determined and a characteristic without any.
 Certificate made_certificate() {
     constexpr double never = surface::undefined, infinite = std::numeric_limits<double>::infinity();
     Certificate certificate{.program = "vkfv 9.8.7\ncommit: 0123456789ab",
@@ -203,7 +203,7 @@ TEST(DigitalCertificate, AnUnknownDateIsSaidToBeNone) {
     EXPECT_THAT(words_of(undated), HasSubstr("1970-01-01 is none"));
 }
 
-// Children of the schema's elements in their order, those that must be there with "!".
+// The schema's elements have these children in this order; those that must be there have "!".
 const std::map<std::string, std::vector<std::string>>& schema_order() {
     static const std::vector<std::string> text = {"dcc:content!"}, rich = {"dcc:content", "dcc:formula"};
     static const std::map<std::string, std::vector<std::string>> order = {
@@ -259,7 +259,7 @@ const std::map<std::string, std::vector<std::string>>& schema_order() {
     return order;
 }
 
-// What of an element and all below it is not in the schema's order.
+// An element and all below it are compared with the schema's order; each breach is a sentence.
 void collect_breaches(const pugi::xml_node& node, std::vector<std::string>& breaches) {
     const auto found = schema_order().find(node.name());
     const std::vector<std::string> none;

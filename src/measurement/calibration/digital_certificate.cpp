@@ -22,7 +22,7 @@ void add_text(Node parent, const char* name, const std::string& text) {
     parent.append_child(name).append_child(pugi::node_pcdata).set_value(safe_text(text).c_str());
 }
 
-// An element of the schema's textType, or of its richContentType with a paragraph for each text.
+// Adds an element of the schema's textType, or one of its richContentType with a paragraph for each text.
 Node add_content(Node parent, const char* name, const Texts& texts) {
     Node node = parent.append_child(name);
     for (const std::string& text : texts) {
@@ -33,12 +33,12 @@ Node add_content(Node parent, const char* name, const Texts& texts) {
     return node;
 }
 
-// What the schema demands and a simulation does not have: the words that say so, with what the certificate is not.
+// A simulation has no laboratory, customer or place, but the schema demands them: these words stand in their places.
 std::string none(const std::string& what) {
     return fmt::format("{}: none. {}", what, not_traceable);
 }
 
-// The D-SI's name of a unit of certificate.json.
+// The D-SI has names of its own for the units of certificate.json.
 std::string unit_of(const std::string& unit) {
     if (unit.empty()) {
         return "\\one";
@@ -59,7 +59,7 @@ std::string unit_of(const std::string& unit) {
         fmt::format("The D-SI's name of the unit {} is not known to digital_certificate.cpp.", unit));
 }
 
-// The uncertainty of a quantity. The D-SI takes numbers without an exponent for coverage factors.
+// The D-SI takes coverage factors without an exponent, unlike other numbers.
 void add_uncertainty(Node real, const CertificateFigure& figure) {
     const double expanded = figure.expanded_uncertainty();
     if (!std::isfinite(expanded)) {
@@ -108,14 +108,14 @@ void add_software(Node parent, const char* name, const std::string& program) {
     add_content(software, "dcc:description", {program});
 }
 
-// An address, which a contact must have.
+// The schema demands an address of a contact.
 void add_no_place(Node contact) {
     add_content(contact.append_child("dcc:location"), "dcc:further", {none("Place")});
 }
 
 void add_core_data(Node administrative, const std::string& identifier, const std::string& date) {
     Node core = administrative.append_child("dcc:coreData");
-    add_text(core, "dcc:countryCodeISO3166_1", "ZZ"); // never a country: ISO 3166-1 leaves it to its users
+    add_text(core, "dcc:countryCodeISO3166_1", "ZZ"); // ISO 3166-1 leaves it to its users: no country has it
     add_text(core, "dcc:usedLangCodeISO639_1", "en");
     add_text(core, "dcc:mandatoryLangCodeISO639_1", "en");
     add_text(core, "dcc:uniqueIdentifier", identifier);
