@@ -131,7 +131,7 @@ class HostileTest(unittest.TestCase):
         """Each is sent once the program traces: its folder then has the configuration."""
         for number, name in ((12, "SIGUSR2"), (24, "SIGXCPU"), (3, "SIGQUIT"), (26, "SIGVTALRM"), (5, "SIGTRAP")):
             process = subprocess.Popen(
-                [vkfv.find_program(), "stack", shared.configuration(), "--rays", "1e9", "--out", str(shared.folder() / name)],
+                [vkfv.find_program(), "stack", shared.configuration(), "--rays", "9e7", "--out", str(shared.folder() / name)],
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 cwd=shared.folder(),
