@@ -58,7 +58,8 @@ class Cluster : public testing::Test {
         write_file(folder_ / "c.toml", replaced(small_configuration, "rays = 2000", "rays = 200000"));
     }
 
-    // For tests that count on no time: those that kill a stack, or forecast it, need one that takes some.
+    // Tests that kill a stack, or forecast it, need one that takes some time; all others are sooner done with ideal
+    // lenses.
     void take_ideal_lenses() const {
         write_file(folder_ / "c.toml", replaced(ideal_configuration(), "rays = 2000", "rays = 200000"));
     }
@@ -125,7 +126,7 @@ TEST_F(Cluster, ShardsOfSeveralSourcesAndPixelsWithGapsMergeToo) {
                     "wavelength_um = 0.5876\n[[source]]\nkind = \"ring\"\ndistance_mm = 30\nelevation_deg = 45\n"
                     "width_mm = 5\nflux_W = 20\nwavelength_um = 0.5\n");
     write_file(folder_ / "c.toml", replaced(text, "pixels = 8\n", "pixels = 8\nfill_factor = 0.6\n"));
-    // One of them is by waves.
+    // One of the two estimators makes its images by waves.
     for (const auto& [estimator, model] : {std::pair{"forward", "waves"}, {"backward", "none"}}) {
         const Words by = {"--device", "host",  "--estimator",
                           estimator,  "--set", std::string("diffraction.model=") + model};

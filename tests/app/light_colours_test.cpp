@@ -52,7 +52,7 @@ nlohmann::json checked(const std::string& configuration, const std::vector<std::
 
 } // namespace
 
-// The ends of the range and its middle for every microscope, the lines between for one.
+// Every microscope takes both ends of the range and its middle; one takes the lines between as well.
 TEST(LightColours, EveryMicroscopeTakesLinesFromBlueToRed) {
     const auto estimated = Contains(HasSubstr("known at the F, d and C lines alone"));
     for (const std::string& magnification : magnifications) {

@@ -30,7 +30,7 @@ std::string read_file(const std::filesystem::path& path);
 // A small configuration with every table; line numbers in tests refer to it.
 extern const std::string small_configuration;
 
-// The same with an objective and a tube lens that are ideal, for tests in which lenses do not matter: tracing rays
+// A small configuration whose objective and tube lens are ideal, for tests in which lenses do not matter: tracing rays
 // through them for the instrument's figures takes half the time of a stack of few rays.
 std::string ideal_configuration();
 

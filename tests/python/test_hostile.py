@@ -128,7 +128,7 @@ class HostileTest(unittest.TestCase):
         self.assertEqual([row[0] for row in rows[1:]], ["1", "2"])
 
     def test_signals_are_told(self):
-        """Each is sent once the program traces: its folder then has the configuration."""
+        """A signal is sent once the program traces: its folder then has the configuration."""
         for number, name in ((12, "SIGUSR2"), (24, "SIGXCPU"), (3, "SIGQUIT"), (26, "SIGVTALRM"), (5, "SIGTRAP")):
             process = subprocess.Popen(
                 [vkfv.find_program(), "stack", shared.configuration(), "--rays", "9e7", "--out", str(shared.folder() / name)],
