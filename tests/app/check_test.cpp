@@ -198,7 +198,7 @@ TEST(Check, TheDemoHasNoWarning) {
 // A check that was made before is answered from what it said, and computed again when anything has changed.
 class KeptCheck : public ::testing::Test {
   protected:
-    KeptCheck() { write_file(folder_ / "c.toml", small_configuration); }
+    KeptCheck() { write_file(folder_ / "c.toml", ideal_configuration()); }
 
     ProgramResult check(const std::vector<std::string>& more = {}) const {
         std::vector<std::string> arguments = {"check", "c.toml"};

@@ -50,7 +50,7 @@ std::string without_times(const std::string& text) {
 
 TEST(CommandLine, ACommandIsItsOption) {
     const auto folder = fresh_folder("both");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration() + "[diffraction]\nmodel = \"none\"\n");
     write_file(folder / "rays.csv", "x_mm,y_mm,z_mm,l,m,n\n0,0,0,0,0,1\n");
     ASSERT_EQ(run_program({"stack", "c.toml", "--quiet"}, folder).exit_code, 0);
     const std::vector<Words> cases = {{"stack", "c.toml"}, // complete: no times are told
@@ -117,7 +117,7 @@ TEST(CommandLine, ACommandIsItsOption) {
 
 TEST(CommandLine, OperandsStandAnywhereBehindTheCommand) {
     const auto folder = fresh_folder("anywhere");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration());
     EXPECT_EQ(run_program({"check", "--rays", "1e3", "c.toml", "--json"}, folder).exit_code, 0);
     // A list does not swallow the operand.
     const auto bench = run_program({"bench", "--bench-parts", "stages,whole", "none.toml", "--quick"}, folder);

@@ -23,9 +23,11 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
+const std::string without_waves = "[diffraction]\nmodel = \"none\"\n";
+
 TEST(ExitCode, OfAFolderInUseIsFive) {
     const auto folder = fresh_folder("in_use");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration() + without_waves);
     ASSERT_EQ(run_program({"--stack", "c.toml", "--quiet"}, folder).exit_code, 0);
     const ResultFolder holder(folder / "out");
     for (const auto& command : {std::vector<std::string>{"--stack", "c.toml"},
@@ -39,7 +41,7 @@ TEST(ExitCode, OfAFolderInUseIsFive) {
 
 TEST(ExitCode, OfAPlaceThatCannotBeWrittenToIsFour) {
     const auto folder = fresh_folder("unwritable");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration());
     write_file(folder / "file", "");
     // A path below a file cannot be made, as anywhere that the system refuses; root may write into read-only folders.
     for (const auto& command : {std::vector<std::string>{"--stack", "c.toml", "--out", "file/out"},
@@ -53,7 +55,7 @@ TEST(ExitCode, OfAPlaceThatCannotBeWrittenToIsFour) {
 
 TEST(ExitCode, OfAnOutputThatIsLostIsFour) {
     const auto folder = fresh_folder("full");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration());
     for (const char* arguments : {"--check c.toml --json", "--devices", "--check c.toml", "--help"}) {
         const int status = std::system(
             fmt::format("cd '{}' && '{}' {} >/dev/full 2>error", folder.string(), program(), arguments).c_str());
@@ -92,7 +94,7 @@ TEST(ExitCode, OfAnInterruptedStackIsTheSignals) {
 // The reason for which a device was chosen is no part of a stack's identity.
 TEST(Identity, IsTheDeviceAndNotTheReasonForIt) {
     const auto folder = fresh_folder("identity");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration() + without_waves);
     ASSERT_EQ(run_program({"--stack", "c.toml", "--quiet"}, folder).exit_code, 0);
     const auto again = run_program({"--stack", "c.toml", "--device", "0"}, folder);
     EXPECT_EQ(again.exit_code, 0) << again.standard_error;
@@ -117,7 +119,7 @@ TEST(Identity, IsTheDeviceAndNotTheReasonForIt) {
 
 TEST(Results, TellTheRaysOfTheLedger) {
     const auto folder = fresh_folder("rays");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration() + without_waves);
     ASSERT_EQ(
         run_program({"--stack", "c.toml", "--quiet", "--estimator", "backward", "--rays", "5000"}, folder).exit_code,
         0);

@@ -85,7 +85,7 @@ TEST(HostileSpecimen, GridsAreBoundedBeforeTheyAreMade) {
 }
 
 TEST(HostileSpecimen, SurfacesWithoutFacetsNeedNoPitch) {
-    const std::string bare = replaced(small_configuration, roughness, "");
+    const std::string bare = replaced(ideal_configuration(), roughness, "");
     const auto with = [&](const std::string& specimen) { return checked_program(replaced(bare, step, specimen)); };
     EXPECT_EQ(with("kind = \"plane\"\nsize_mm = 20\nrepresentation = \"analytic\"\n").exit_code, 0);
     const auto facets = with("kind = \"plane\"\nsize_mm = 20\n");
@@ -107,7 +107,7 @@ TEST(HostileSpecimen, LightThatGoesAstrayIsToldOf) {
                    " 0\nvertex " + x + " " + y + " 0\nendloop\nendfacet\n";
         };
         write_file(folder / "part.stl", "solid s\n" + facet(low, high) + facet(high, low) + "endsolid s\n");
-        write_file(folder / "c.toml", replaced(replaced(small_configuration, roughness, ""), step,
+        write_file(folder / "c.toml", replaced(replaced(ideal_configuration(), roughness, ""), step,
                                                "kind = \"stl\"\nfile = \"part.stl\"\n" + keys));
         return run_program(arguments, folder);
     };
@@ -134,7 +134,7 @@ TEST(HostileSpecimen, LightThatGoesAstrayIsToldOf) {
 TEST(HostileSpecimen, LightInItsPlaceIsNotToldOf) {
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"--check", "c.toml"}, {"--image", "c.toml", "--z", "0", "--device", "host"}}) {
-        const auto result = checked_program(small_configuration, arguments);
+        const auto result = checked_program(ideal_configuration(), arguments);
         EXPECT_EQ(result.exit_code, 0) << result.standard_error;
         EXPECT_THAT(result.standard_output + result.standard_error, Not(HasSubstr("arrived at the detector")));
         EXPECT_THAT(result.standard_output + result.standard_error, Not(HasSubstr("falls beside the specimen")));

@@ -40,8 +40,10 @@ void replace_text(std::string& text, const std::string& found, const std::string
 nlohmann::json checked(const std::string& configuration, const std::vector<std::string>& more = {}) {
     const auto folder = fresh_folder("light_colours");
     write_file(folder / "c.toml", configuration);
-    // The rays that foretell the noise of forward images are no more than those of the configuration.
-    std::vector<std::string> arguments = {"check", "c.toml", "--json", "--rays", "10000"};
+    // The rays that foretell the noise of forward images are no more than those of the configuration, and those that
+    // foretell the noise of heights are of so many pixels.
+    std::vector<std::string> arguments = {
+        "check", "c.toml", "--json", "--rays", "10000", "--set", "detector.pixels=16"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const auto result = run_program(arguments, folder);
     EXPECT_EQ(result.exit_code, 0) << result.standard_error;
@@ -50,19 +52,23 @@ nlohmann::json checked(const std::string& configuration, const std::vector<std::
 
 } // namespace
 
+// Every microscope takes both ends of the range and its middle; one takes the lines between as well.
 TEST(LightColours, EveryMicroscopeTakesLinesFromBlueToRed) {
     const auto estimated = Contains(HasSubstr("known at the F, d and C lines alone"));
     for (const std::string& magnification : magnifications) {
-        for (const char* um : {"0.40", "0.46", "0.55", "0.63", "0.70"}) {
+        std::vector<std::string> lines = {"0.40", "0.55", "0.70"};
+        if (magnification == "50x") {
+            lines.insert(lines.end(), {"0.46", "0.63"});
+        }
+        for (const std::string& um : lines) {
             SCOPED_TRACE(magnification + " at " + um + " um");
-            const auto report =
-                checked(microscope(magnification), {"--set", std::string("source.wavelength_um=") + um});
+            const auto report = checked(microscope(magnification), {"--set", "source.wavelength_um=" + um});
             ASSERT_TRUE(report.contains("warnings"));
             std::vector<std::string> warnings;
             for (const auto& warning : report["warnings"]) {
                 warnings.push_back(warning["sentence"]);
             }
-            if (std::string(um) == "0.55" || std::string(um) == "0.63") {
+            if (um == "0.55" || um == "0.63") {
                 EXPECT_THAT(warnings, Not(estimated));
             } else {
                 EXPECT_THAT(warnings, estimated);

@@ -76,6 +76,12 @@ window_px = 3
 directory = "out"
 )";
 
+std::string ideal_configuration() {
+    const auto text = replaced(small_configuration, "prescription = \"10x_0.28\"",
+                               "kind = \"ideal\"\nfocal_length_mm = 20.0\nnumerical_aperture = 0.28");
+    return replaced(text, "prescription = \"200mm\"", "kind = \"ideal\"\nfocal_length_mm = 200.0");
+}
+
 std::string program() {
     const char* const chosen = std::getenv("VKFV_PROGRAM");
     return chosen != nullptr ? chosen : VKFV_BINARY_DIR "/vkfv";

@@ -218,7 +218,7 @@ TEST(Program, WavesBeyondTheMachinesMemoryAreRefused) {
 // Before any image of it is traced; check warns of the same.
 TEST(Program, AnEvaluationBeyondTheMachinesMemoryIsRefused) {
     const auto folder = fresh_folder("evaluation_beyond_memory");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration());
     const std::vector<std::string> settings = {"--device", "host",
                                                "--rays",   "1000",
                                                "--set",    "detector.pixels=16384",
@@ -237,7 +237,7 @@ TEST(Program, AnEvaluationBeyondTheMachinesMemoryIsRefused) {
 
 TEST(Program, ImageOfAScanPositionIsThatImageOfTheStack) {
     const auto folder = fresh_folder("image");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration());
     const auto stack = run_program({"--stack", "c.toml", "--rays", "1e5"}, folder);
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     const auto image = run_program({"--image", "c.toml", "--rays", "1e5", "--z", "1", "--out", "one.tif"}, folder);
@@ -252,7 +252,7 @@ TEST(Program, ImageOfAScanPositionIsThatImageOfTheStack) {
 
 TEST(Program, TopographyEvaluatesAStackAnew) {
     const auto folder = fresh_folder("topography");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration());
     // So few rays over so short a scan measure nothing; peaks of the noise are taken too, so that there are
     // heights.
     const auto stack =
@@ -297,7 +297,7 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
 
 TEST(Program, HeightsAreWrittenInEveryFormatAndAllMapsInOneFile) {
     const auto folder = fresh_folder("formats");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration() + "[diffraction]\nmodel = \"none\"\n");
     const auto stack = run_program({"stack", "c.toml", "--rays", "2e5", "--quiet", "--set",
                                     "topography.false_peak_rate=1", "--set", "topography.smoothing_steps=0", "--set",
                                     "output.surfaces=[\"tiff\", \"gwy\", \"gsf\", \"npy\", \"csv\", \"sdf\"]"},
@@ -324,7 +324,7 @@ TEST(Program, HeightsAreWrittenInEveryFormatAndAllMapsInOneFile) {
 
 TEST(Program, AStackOfAnotherConfigurationIsRefusedWithTheDifference) {
     const auto folder = fresh_folder("refused");
-    write_file(folder / "c.toml", small_configuration);
+    write_file(folder / "c.toml", ideal_configuration() + "[diffraction]\nmodel = \"none\"\n");
     ASSERT_EQ(run_program({"--stack", "c.toml"}, folder).exit_code, 0);
     const auto refused = run_program({"--stack", "c.toml", "--seed", "2"}, folder);
     EXPECT_EQ(refused.exit_code, 2);

@@ -106,7 +106,7 @@ class FileFaults : public testing::Test {
   protected:
     FileFaults() : folder_(fresh_folder("work")) {
         write_file(folder_ / "c.toml",
-                   replaced(small_configuration, "[trace]\n", "[trace]\ndevice = \"host\"\n") +
+                   replaced(ideal_configuration(), "[trace]\n", "[trace]\ndevice = \"host\"\n") +
                        "[diffraction]\nmodel = \"none\"\n[sweep]\nz_um = 0\n[[sweep.parameter]]\nkey = "
                        "\"specimen.material.g\"\nvalues = [0.3, 1.0]\n");
     }

@@ -72,7 +72,7 @@ std::vector<Fault> one_of_each(const std::vector<Fault>& calls, std::size_t ever
 
 class VulkanFaults : public testing::Test {
   protected:
-    VulkanFaults() : folder_(fresh_folder("work")) { write_file(folder_ / "c.toml", small_configuration); }
+    VulkanFaults() : folder_(fresh_folder("work")) { write_file(folder_ / "c.toml", ideal_configuration()); }
 
     // Traces three small images.
     static Arguments traced(const std::string& command, const Arguments& further) {

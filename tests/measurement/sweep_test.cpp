@@ -37,6 +37,7 @@ class SweepOfStacks : public testing::Test {
                                            "[[sweep.parameter]]\nkey = \"trace.estimator\"\nvalues = [\"backward\"]\n");
     }
     void TearDown() override { fs::remove_all(folder_); }
+    static void TearDownTestSuite() { fs::remove_all(shared_); }
 
     // The stacks are small, of 11 images without waves, and each combination has two repeats.
     std::vector<TomlOverride> overrides(const std::string& surfaces, const fs::path& out) const {
@@ -51,20 +52,34 @@ class SweepOfStacks : public testing::Test {
                 {"output.surfaces", surfaces, ""}};
     }
     // `traced` counts the images that were traced.
-    SweepResult run(const std::string& surfaces, int& traced) const {
+    SweepResult run(const std::string& surfaces, int& traced, const fs::path& out = "out") const {
         Progress progress(std::cerr, Progress::Style::quiet);
         traced = 0;
-        return run_sweep(folder_ / "c.toml", overrides(surfaces, "out"), progress,
+        return run_sweep(folder_ / "c.toml", overrides(surfaces, out), progress,
                          [&](const StackResult& stack) { traced += stack.traced.traced; });
+    }
+    struct Measured {
+        SweepResult result;
+        int traced = 0;
+    };
+    // A sweep that several tests look at, measured by the first of them: they leave its folder as it is.
+    const Measured& shared() const {
+        static const Measured measured = [this] {
+            int traced = 0;
+            auto result = run("[\"tiff\"]", traced, shared_ / "out");
+            return Measured{.result = std::move(result), .traced = traced};
+        }();
+        return measured;
     }
 
     fs::path folder_ = fs::temp_directory_path() / ("vkfv-sweep-of-stacks-" + std::to_string(getpid()));
+    inline static const fs::path shared_ =
+        fs::temp_directory_path() / ("vkfv-shared-sweep-of-stacks-" + std::to_string(getpid()));
 };
 
 TEST_F(SweepOfStacks, FiguresAreThoseOfItsFiles) {
-    int traced = 0;
-    const auto result = run("[\"tiff\"]", traced);
-    EXPECT_EQ(traced, 2 * 11);
+    const auto& result = shared().result;
+    EXPECT_EQ(shared().traced, 2 * 11);
     ASSERT_EQ(result.rows.size(), 1u);
     const auto& figures = result.rows.front().figures;
     const auto stack = [&](int repeat) {
@@ -95,14 +110,15 @@ TEST_F(SweepOfStacks, FiguresAreThoseOfItsFiles) {
 }
 
 TEST_F(SweepOfStacks, IsTheSameOfImagesThatWereThereAndOfFilesThatCannotBeReadBack) {
-    int traced = 0;
-    const auto first = run("[\"tiff\"]", traced);
+    const auto& first = shared().result;
     const auto table = read_file(first.folder / "sweep.csv");
+    fs::copy(first.folder, folder_ / "out", fs::copy_options::recursive);
+    int traced = 0;
     const auto again = run("[\"ply\"]", traced); // a mesh is for viewers alone
     EXPECT_EQ(traced, 0);
     EXPECT_EQ(again.rows.front().figures, first.rows.front().figures);
     EXPECT_EQ(again.rows.front().picture.values, first.rows.front().picture.values);
-    EXPECT_EQ(read_file(first.folder / "sweep.csv"), table);
+    EXPECT_EQ(read_file(again.folder / "sweep.csv"), table);
 }
 
 // Two cameras, each of whose stacks is evaluated by two windows, share the light of one stack, which is traced once.
