@@ -126,6 +126,7 @@ Estimate estimate_by(const Scaled& scaled, const std::vector<double>& steps, con
     estimate.slopes = slopes_of(scaled, steps, seeds);
     const MatrixXd about = centre.rowwise() - estimate.mean.transpose();
     std::vector<Index> used;
+    used.reserve(steps.size());
     for (Index k = 0; k < estimate.slopes.cols(); ++k) {
         if (determined[static_cast<std::size_t>(k)]) {
             used.push_back(k);
@@ -187,6 +188,7 @@ MatrixXd information_of(const Scaled& scaled, const Estimate& estimate, const st
     };
     const auto half_of = [&](const std::vector<Index>& of) {
         Half half{.slopes = estimate.basis.transpose() * slopes_of(scaled, steps, of), .scatters = {}};
+        half.scatters.reserve(steps.size());
         for (std::size_t k = 0; k < steps.size(); ++k) {
             const MatrixXd difference = covariance_of(rows_of(scaled.above[k], of) * estimate.basis) -
                                         covariance_of(rows_of(scaled.below[k], of) * estimate.basis);
@@ -210,6 +212,7 @@ MatrixXd information_of(const Scaled& scaled, const Estimate& estimate, const st
 // The inverse over the parameters of the choice, zero elsewhere; empty if it is not positive there.
 MatrixXd inverse_over(const MatrixXd& information, const std::vector<bool>& chosen) {
     std::vector<Index> used;
+    used.reserve(chosen.size());
     for (Index k = 0; k < information.rows(); ++k) {
         if (chosen[static_cast<std::size_t>(k)]) {
             used.push_back(k);
@@ -271,6 +274,8 @@ MomentFit fit_moments(const ModelRuns& runs, const std::vector<double>& measured
     // Statistics are measured in their standard deviations; one that never differs tells nothing by its scatter.
     std::vector<Index> kept;
     std::vector<double> deviations;
+    kept.reserve(measured.size());
+    deviations.reserve(measured.size());
     fit.deviation.assign(measured.size(), 0);
     for (std::size_t k = 0; k < measured.size(); ++k) {
         double mean = 0, square = 0;
@@ -294,6 +299,8 @@ MomentFit fit_moments(const ModelRuns& runs, const std::vector<double>& measured
     const VectorXd scale = VectorXd::Map(deviations.data(), static_cast<Index>(deviations.size()));
     Scaled scaled{.components = principal_components(matrix_of(runs.pilot, kept, scale)),
                   .centre = matrix_of(runs.centre, kept, scale)};
+    scaled.above.reserve(runs.steps.size());
+    scaled.below.reserve(runs.steps.size());
     for (std::size_t k = 0; k < runs.steps.size(); ++k) {
         scaled.above.push_back(matrix_of(runs.above[k], kept, scale));
         scaled.below.push_back(matrix_of(runs.below[k], kept, scale));
@@ -322,6 +329,7 @@ MomentFit fit_moments(const ModelRuns& runs, const std::vector<double>& measured
     // times the covariance, a measurement less the mean of all runs by 1 + 1 / R.
     MatrixXd covariance = MatrixXd::Zero(parameters, parameters);
     std::vector<double> logarithms;
+    logarithms.reserve(runs.centre.size());
     for (Index seed = 0; seed < seeds; ++seed) {
         const Estimate others = estimate_by(scaled, runs.steps, seeds_but(seeds, seed), fit.determined);
         const VectorXd run = scaled.centre.row(seed).transpose();

@@ -2,6 +2,7 @@
 #include "app/program.hpp"
 #include "core/files/file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -50,7 +51,7 @@ TEST(Fit, FindsTheNumberOfAStackAndGoesOnWhereItEnded) {
     constexpr double known = 0.7, another = 0.35;
     for (const auto& [name, g] : {std::pair("known", known), std::pair("another", another)}) {
         const auto stack = run_program(
-            {"stack", "c.toml", "--out", name, "--set", "specimen.material.g=" + std::to_string(g), "--quiet"}, folder);
+            {"stack", "c.toml", "--out", name, "--set", fmt::format("specimen.material.g={}", g), "--quiet"}, folder);
         ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     }
     const auto first = run_program(fit_of("known/"), folder);

@@ -158,7 +158,7 @@ TEST(SimulatedMoments, ParametersThatDoAlikeAreCorrelated) {
 TEST(SimulatedMoments, AParameterWithoutEffectIsNotDetermined) {
     const KnownModel model;
     auto runs = runs_of(model, 24, 1);
-    runs.widths[1] = 0.3;
+    runs.widths[1] = 0.1;
     for (std::size_t seed = 0; seed < 24; ++seed) {
         runs.above[1][seed] = model.run(0, 0, 5000u + static_cast<unsigned>(seed));
         runs.below[1][seed] = model.run(0, 0, 6000u + static_cast<unsigned>(seed));

@@ -23,6 +23,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <system_error>
 
 namespace vkfv::measurement {
@@ -250,18 +251,24 @@ FitResult fit(const FitRequest& request, Progress& progress) {
     const CountedWork work(most * images);
     const WarningsOnce warnings_once; // each stack would give them again
     const auto begun = std::chrono::steady_clock::now();
-    found.search = search_moments(
-        found.parameters, found.measured,
-        [&](const std::vector<double>& place, int seed) {
-            auto statistics = model.statistics(place, seed);
-            if (model.stacks() == request.replicates) {
-                const std::chrono::duration<double> past = std::chrono::steady_clock::now() - begun;
-                spdlog::info("{} stacks took {:.3g} s; the others take at most {:.3g} s", request.replicates,
-                             past.count(), past.count() / request.replicates * (most - request.replicates));
-            }
-            return statistics;
-        },
-        request.replicates);
+    bool told = false;
+    const auto statistics_at = [&](const std::vector<double>& place, int seed) {
+        auto statistics = model.statistics(place, seed);
+        if (!told && model.stacks() == request.replicates) {
+            told = true;
+            const std::chrono::duration<double> past = std::chrono::steady_clock::now() - begun;
+            spdlog::info("{} stacks took {:.3g} s; the others take at most {:.3g} s", request.replicates, past.count(),
+                         past.count() / request.replicates * (most - request.replicates));
+        }
+        return statistics;
+    };
+    try {
+        found.search = search_moments(found.parameters, found.measured, statistics_at, request.replicates);
+    } catch (const std::domain_error&) {
+        throw RunError(
+            "the model's stacks do not differ from seed to seed, so nothing tells how far a measured stack may "
+            "be from them. Give [specimen.roughness] or [specimen.reflectance] a texture, or fewer rays");
+    }
     found.stacks = model.stacks();
     leave_out_work((most - found.stacks) * images);
     found.devices.assign(model.devices().begin(), model.devices().end());

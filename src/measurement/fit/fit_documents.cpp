@@ -129,6 +129,7 @@ std::string chart_of(const Fit& fit, const Placed& placed) {
 void add_parameters(report::Page& page, const std::vector<FittedParameter>& parameters) {
     std::vector<std::vector<std::string>> table{
         {"parameter", "start", "estimate", "u", "95 % from", "to", "Cramér-Rao bound", "u / bound", "told"}};
+    table.reserve(parameters.size() + 1);
     for (const FittedParameter& one : parameters) {
         const auto shown = [&](double value) {
             return std::isfinite(value) ? value_text(value, one.standard_uncertainty) : std::string("–");
@@ -145,12 +146,15 @@ void add_parameters(report::Page& page, const std::vector<FittedParameter>& para
 
 void add_correlation_table(report::Page& page, const Fit& fit) {
     std::vector<std::string> head = {"correlation"};
+    head.reserve(fit.parameters.size() + 1);
     for (const FreeParameter& parameter : fit.parameters) {
         head.push_back(parameter.key);
     }
     std::vector<std::vector<std::string>> table = {std::move(head)};
+    table.reserve(fit.parameters.size() + 1);
     for (std::size_t row = 0; row < fit.parameters.size(); ++row) {
         std::vector<std::string> cells = {fit.parameters[row].key};
+        cells.reserve(fit.parameters.size() + 1);
         for (std::size_t column = 0; column < fit.parameters.size(); ++column) {
             const double correlation = fit.correlation(row, column);
             cells.push_back(std::isfinite(correlation) ? fmt::format("{:.3f}", correlation) : std::string("–"));

@@ -31,7 +31,7 @@ double logistic(double x) {
 const Key* number_key(const std::string& key) {
     for (const KeyTable* table : key_tables()) {
         for (const Key* one : table->keys) {
-            if (one->type == Key::Type::number && table->path + "." + one->name == key) {
+            if (one->type == Key::Type::number && fmt::format("{}.{}", table->path, one->name) == key) {
                 return one;
             }
         }

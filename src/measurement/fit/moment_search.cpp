@@ -172,6 +172,9 @@ MomentSearch search_moments(const std::vector<FreeParameter>& parameters, const 
         runs.above.clear();
         runs.below.clear();
         runs.widths.clear();
+        runs.above.reserve(parameters.size());
+        runs.below.reserve(parameters.size());
+        runs.widths.reserve(parameters.size());
         for (std::size_t k = 0; k < parameters.size(); ++k) {
             runs.above.push_back(runs_at(model, moved(search.place, k, runs.steps[k]), replicates, replicates));
             runs.below.push_back(runs_at(model, moved(search.place, k, -runs.steps[k]), replicates, replicates));

@@ -139,6 +139,7 @@ std::vector<StatisticGroup> statistic_groups(const StatisticsLayout& layout) {
     std::vector<StatisticGroup> groups = {
         {.name = "brightness", .title = "brightness over that of the stack", .count = layout.images, .of_images = true},
         {.name = "contrast", .title = "ln of the contrast", .count = layout.images, .of_images = true}};
+    groups.reserve(scales.size() + 5);
     for (const int scale : scales) {
         if (has_scale(layout, scale)) {
             groups.push_back({.name = fmt::format("sharpness_{}", scale),
@@ -182,6 +183,7 @@ void StackStatistics::add(int image, const Grid<float>& values) {
     const Grid<double> own = binned(values, 1);
     const Moments moments = moments_of(own.values);
     OfImage found{.mean = moments.mean, .deviation = moments.deviation};
+    found.differences.reserve(scales.size());
     for (const int scale : scales) {
         if (has_scale(layout_, scale)) {
             const Grid<double> of_scale = binned(values, scale);
@@ -220,6 +222,7 @@ std::vector<double> StackStatistics::values() const {
     }
     constexpr double least_light = 1e-3; // of the stack's, by which contrasts of dark images are divided
     std::vector<double> values;
+    values.reserve(images_.size() * (scales.size() + 3) + curve_names.size() + 1);
     for (const OfImage& image : images_) {
         values.push_back(image.mean / power);
     }
@@ -237,6 +240,9 @@ std::vector<double> StackStatistics::values() const {
     values.insert(values.end(), likeness_.begin(), likeness_.end());
     if (has_curves(layout_)) {
         std::vector<double> places, widths, heights, floors;
+        for (auto* of_curves : {&places, &widths, &heights, &floors}) {
+            of_curves->reserve(curves_.size());
+        }
         for (const auto& curve : curves_) {
             const CurveShape shape = shape_of(curve);
             places.push_back(shape.place);
