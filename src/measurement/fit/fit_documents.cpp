@@ -283,8 +283,9 @@ std::string fit_page(const Fit& fit, const std::string& configuration) {
     add_parameters(page, fit.fitted());
     page.paragraph(
         "Intervals of 95 % by Student's distribution. The Cramér-Rao bound is the least standard uncertainty that any "
-        "unbiased estimate by these statistics can have, if they are normal. A parameter is told if its standard "
-        "uncertainty is at most a third of what is known of it beforehand.");
+        "unbiased estimate by these statistics can have, if they are normal. Both are known by the replicates alone, "
+        "so that their ratio may be below 1 by chance. A parameter is told if its standard uncertainty is at most a "
+        "third of what is known of it beforehand.");
     add_correlation_table(page, fit);
     page.section("statistics", "Statistics");
     page.paragraph("Measured, and as the fitted model makes them in the mean, with the range of 95 % of measurements. "
