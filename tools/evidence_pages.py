@@ -201,7 +201,7 @@ class Page:
     def programs_text(self):
         """The sentence at the page's head that says where its figures come from."""
         text = (f"*Figures of {days(list(self.records.values()))}. Command, program, device and date of each: "
-                f"[evidence/{self.name}.json](evidence/{self.name}.json); `tools/evidence --stale` lists those to be renewed.*")
+                f"[evidence/{self.name}.json](evidence/{self.name}.json).*")
         return textwrap.fill(text, 150, break_long_words=False, break_on_hyphens=False) + "\n"
 
     def problems(self):

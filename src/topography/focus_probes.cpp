@@ -630,6 +630,7 @@ std::vector<double> FocusProbes::pattern(const Probe& probe, std::size_t image) 
 bool FocusProbes::reappears(const std::vector<PlaceOfImages>& places) const {
     constexpr std::size_t fewest = 5;
     constexpr double most_errors_by_chance = 3; // standard errors
+    constexpr double least_excess = 0.1;        // blocks of compressed images make noise alike by less
     if (places.size() < fewest) {
         return true;
     }
@@ -649,7 +650,7 @@ bool FocusProbes::reappears(const std::vector<PlaceOfImages>& places) const {
     });
     const auto count = static_cast<double>(excess.size());
     const double mean = std::accumulate(excess.begin(), excess.end(), 0.0) / count;
-    return mean > most_errors_by_chance * std::sqrt(variance_of(excess) / count);
+    return mean > std::max(least_excess, most_errors_by_chance * std::sqrt(variance_of(excess) / count));
 }
 
 std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
@@ -671,7 +672,7 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
         means.curve = all_shares(axial_shares, {1}, images_);
     }
     std::vector<double> shares(probes_.size(), std::numeric_limits<double>::quiet_NaN());
-    std::vector<std::optional<PlaceOfImages>> wide(probes_.size()); // where a neighbouring image has strong texture too
+    std::vector<std::optional<PlaceOfImages>> passing(probes_.size()); // where strong texture does not persist
     parallel_items(static_cast<int>(probes_.size()), [&](int k) {
         const Probe& probe = probes_[static_cast<std::size_t>(k)];
         const std::vector<double>& singles = probe.singles;
@@ -690,19 +691,19 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
         }
         shares[static_cast<std::size_t>(k)] = (joint * joint / alone - 1) / (1 / kept - 1);
         const std::size_t neighbour = singles[at - 1] > singles[at + 1] ? at - 1 : at + 1;
-        if (singles[neighbour] > 0.5 * singles[at] && shares[static_cast<std::size_t>(k)] < persistent) {
-            wide[static_cast<std::size_t>(k)] = {&probe, at, neighbour};
+        if (shares[static_cast<std::size_t>(k)] < persistent) {
+            passing[static_cast<std::size_t>(k)] = {&probe, at, neighbour};
         }
     });
     std::vector<PlaceOfImages> not_persistent;
-    for (const auto& place : wide) {
+    for (const auto& place : passing) {
         if (place) {
             not_persistent.push_back(*place);
         }
     }
     if (!reappears(not_persistent)) { // a pattern that does not reappear is noise, whose strength is no evidence
         for (std::size_t k = 0; k < shares.size(); ++k) {
-            shares[k] = wide[k] ? std::numeric_limits<double>::quiet_NaN() : shares[k];
+            shares[k] = passing[k] ? std::numeric_limits<double>::quiet_NaN() : shares[k];
         }
     }
     std::erase_if(shares, [](double share) { return std::isnan(share); });

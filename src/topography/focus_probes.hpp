@@ -95,8 +95,7 @@ class FocusProbes {
     // pattern, 1 if the pattern stays. Texture is strong where the focus measure rises to eight times its quiet value
     // and that of rounding to grey values. The result is the median over the probes with strong texture; it is empty if
     // hardly any has. The share is small if the images move, or if texture is in focus in one image alone. A pattern
-    // that is strong in a neighbouring image too, but is not found there at any place nearby, is noise and does not
-    // count.
+    // that is not found in the neighbouring image at any place nearby is noise and does not count.
     std::optional<double> persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
                                                         bool curves_averaged) const;
 
@@ -164,7 +163,8 @@ class FocusProbes {
     // The patterns of all images less the mean of those with the least focus, a third of all.
     std::vector<std::vector<double>> patterns(const Probe& probe) const;
     // True if the patterns of images are found in their neighbours too, wherever they have moved: if their largest
-    // correlations exceed those with other places' neighbours by more than chance. True also if places are few.
+    // correlations exceed those with other places' neighbours by more than chance and by a tenth. True also if places
+    // are few.
     bool reappears(const std::vector<PlaceOfImages>& places) const;
 
     // Second differences along z of a channel, evaluated.

@@ -31,8 +31,8 @@ double chi_square_exceeded_as(double normal, double degrees) {
 } // namespace
 
 PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const std::vector<double>& neighbour_weights,
-                                   int images, double rate, double least_energy)
-    : independent_(independent), least_energy_(least_energy) {
+                                   int images, double rate, std::optional<double> strong_texture, double least_energy)
+    : independent_(independent), strong_texture_(strong_texture), least_energy_(least_energy) {
     for (int at = 0; at < images; ++at) {
         const auto shares = axial_shares(neighbour_weights, at, images);
         kept_.push_back(std::accumulate(shares.begin(), shares.end(), 0.0, [](double sum, const Share& share) {
@@ -47,11 +47,14 @@ PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const s
 
 bool PersistenceLimit::tells() const {
     // The ratio is 1 / f for images that are all alike. Texture that comes into focus has two thirds of this where
-    // images are averaged, and nine tenths where two neighbours alone are compared, whose f is 3 / 8.
-    constexpr double whole = 0.9, of_averaged = 0.66, of_neighbours = 0.95;
+    // images are averaged, and nine tenths where two neighbours alone are compared, whose f is 3 / 8. Compression takes
+    // some of it away: where the stack's own strong texture is known, a tenth below it is for its scatter.
+    constexpr double whole = 0.9, of_averaged = 0.66, of_neighbours = 0.95, below_strong = 0.9;
     const double kept = kept_[kept_.size() / 2];
+    const double of_texture = 3 * kept < 1 ? of_averaged : of_neighbours;
+    const double of_strong = strong_texture_ ? below_strong * std::lerp(kept, 1.0, *strong_texture_) : of_texture;
     return independent_.deviation > 0 && independent_.largest * kept < whole &&
-           (independent_.mean + beyond_chance(1)) * kept < (3 * kept < 1 ? of_averaged : of_neighbours);
+           (independent_.mean + beyond_chance(1)) * kept < std::min(of_texture, of_strong);
 }
 
 double PersistenceLimit::beyond_chance(double window_share) const {

@@ -17,6 +17,7 @@
 #include "focus/focus.hpp"
 #include "topography/axial_average.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace vkfv::topography {
@@ -33,10 +34,11 @@ class PersistenceLimit {
     // No limit is set.
     PersistenceLimit() = default;
     // The limit that curves of noise alone exceed with the probability `rate`, wherever in the scan they have their
-    // maximum. neighbour_weights: of an image's neighbours, by their distance. least_energy: of E, where J does not
-    // tell texture from noise (tells()).
+    // maximum. neighbour_weights: of an image's neighbours, by their distance. strong_texture: the share of energy that
+    // persists where the stack's texture is strong, if it is known. least_energy: of E, where J does not tell texture
+    // from noise (tells()).
     PersistenceLimit(const IndependentImages& independent, const std::vector<double>& neighbour_weights, int images,
-                     double rate, double least_energy = 0);
+                     double rate, std::optional<double> strong_texture = {}, double least_energy = 0);
 
     // False if nothing is known of the noise, or if its images are so often alike by chance that texture does not
     // exceed the limit. In the blank parts of compressed images only a few patterns are left, and in most images none.
@@ -60,6 +62,7 @@ class PersistenceLimit {
         0; // standard normal value exceeded as rarely as noise may exceed the limit at one place of the scan
     std::vector<double> kept_; // f of every image
     double mean_kept_ = 0;
+    std::optional<double> strong_texture_;
     double least_energy_ = 0;
 };
 

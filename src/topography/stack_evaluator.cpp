@@ -363,7 +363,7 @@ StackFigures StackEvaluator::judge_stack() const {
         if (of_strong.value_or(1) >= least_persistence) {
             const auto limit_by = [&](const IndependentImages& independent, double least_energy) {
                 return PersistenceLimit(independent, neighbour_weights_, images,
-                                        share_of_rate * options_.false_peak_rate, least_energy);
+                                        share_of_rate * options_.false_peak_rate, of_strong, least_energy);
             };
             const auto independent = probes_->independent_images(neighbour_weights_, averaged);
             figures.persistence = limit_by(independent, 0);

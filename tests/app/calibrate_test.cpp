@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <pugixml.hpp>
 
 namespace vkfv::test {
 namespace {
@@ -31,6 +32,12 @@ TEST(Calibrate, WritesACertificateAndGoesOnWhereItEnded) {
     EXPECT_EQ(noise.at("figures").at(0).at("key"), "N_M_at_50_percent_nm");
     EXPECT_TRUE(certificate.at("characteristics").at(1).at("figures").empty());
     EXPECT_EQ(certificate.at("first_seed"), 1);
+    const auto digital = read_file(folder / "out/certificate.xml");
+    pugi::xml_document document;
+    ASSERT_TRUE(document.load_buffer(digital.data(), digital.size()));
+    EXPECT_THAT(digital, HasSubstr("not traceable"));
+    EXPECT_EQ(document.select_nodes("//dcc:measurementResult").size(), 2u);
+    EXPECT_EQ(document.select_nodes("//dcc:result//dcc:quantity").size(), noise.at("figures").size());
     const auto page = read_file(folder / "out/certificate.html");
     EXPECT_THAT(page, HasSubstr("not traceable"));
     EXPECT_THAT(page, HasSubstr("The instrument to scale"));
@@ -48,6 +55,7 @@ TEST(Calibrate, WritesACertificateAndGoesOnWhereItEnded) {
     ASSERT_EQ(again.exit_code, 0) << again.standard_error;
     EXPECT_EQ(fs::last_write_time(image("contrast_50/repeat_01")), kept);
     EXPECT_EQ(read_file(folder / "out/certificate.json"), bytes);
+    EXPECT_EQ(read_file(folder / "out/certificate.xml"), digital);
     EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 0);
     EXPECT_EQ(run_program({"verify", "out/N_M/contrast_50/repeat_03"}, folder).exit_code, 0);
 

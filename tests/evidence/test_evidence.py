@@ -291,6 +291,90 @@ class TheDocumentsAreShort(unittest.TestCase):
         self.assertLessEqual(len((SOURCE / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()), MOST_LINES_OF_CHANGELOG)
 
 
+def names_of_tests():
+    """The beginnings of all names that ctest lists, as the sources tell them: ROOM.SUITE, and whole names of tests that are not of gtest."""
+    names = {"fuzz_corpus."}  # a test a reader, from a loop of tests/fuzz/CMakeLists.txt
+    for path in (SOURCE / "tests").rglob("CMakeLists.txt"):
+        names.update(re.findall(r"add_test\(NAME ([\w./]+)", path.read_text(encoding="utf-8")))
+    for path in (SOURCE / "tests").rglob("*.cpp"):
+        folders = path.relative_to(SOURCE / "tests").parts[:-1]
+        text = path.read_text(encoding="utf-8")
+        kinds = {"statistics": f"{folders[0]}_statistics."} if folders[1:] else {}
+        room = kinds.get(folders[-1], f"{folders[0]}." if folders[0] != "gwyddion" else "")
+        prefixes = {suite: prefix for prefix, suite in re.findall(r"INSTANTIATE_TEST_SUITE_P\(\s*(\w+),\s*(\w+)", text)}
+        for kind, suite in re.findall(r"^(TEST|TEST_F|TEST_P)\((\w+),", text, re.MULTILINE):
+            names.add(f"{room}{prefixes[suite]}/{suite}" if kind == "TEST_P" else f"{room}{suite}")
+    return names
+
+
+def section_of(page, anchor):
+    """The text of the page below the heading of this anchor, without the sections beside and above it; None: no such heading."""
+    headings = list(re.finditer(r"^(#+) (.*)$", re.sub(r"^```.*?^```", lambda block: re.sub("[^\n]", " ", block[0]), page,
+                                                       flags=re.MULTILINE | re.DOTALL), re.MULTILINE))
+    for k, heading in enumerate(headings):
+        if re.sub(r"[^\w\- ]", "", heading[2].lower()).replace(" ", "-") == anchor:
+            end = next((other.start() for other in headings[k + 1:] if len(other[1]) <= len(heading[1])), len(page))
+            return page[heading.end():end]
+    return None
+
+
+COMMAND = re.compile(r"(`|^)(vkfv|tools/|tests/|\w+_test )", re.MULTILINE)
+
+
+class RequirementsTest(unittest.TestCase):
+    """docs/requirements.md: every test that it names exists, and every claim has a figure with a record, or a command."""
+
+    @staticmethod
+    def problems(text):
+        tests, problems, rows = names_of_tests(), [], 0
+        claims = text.index("\n## Claims")
+        for row in re.finditer(r"^\| .* \|$", text, re.MULTILINE):
+            cells = [cell.strip() for cell in row[0].strip("|").split("|")]
+            if cells[0] in ("requirement", "claim"):
+                continue
+            rows += 1
+            named, page = cells[-2], cells[-1]
+            if named != "all" and not re.fullmatch(r"`[\w./]+`(, `[\w./]+`)*", named):
+                problems.append(f"{cells[0]}: names no tests")
+            problems += [f"{cells[0]}: no test {name}" for name in re.findall(r"`([^`]+)`", named)
+                         if not any(test.startswith(name) for test in tests)]
+            links = re.findall(r"\]\(([^)#]+)(?:#([^)]+))?\)", page)
+            evident = COMMAND.search(page) is not None
+            for file, anchor in links:
+                path = SOURCE / "docs" / file
+                section = path.read_text(encoding="utf-8") if path.exists() else None
+                if section is not None and anchor:
+                    section = section_of(section, anchor)
+                if section is None:
+                    problems.append(f"{cells[0]}: no page or heading {file} {anchor}")
+                else:
+                    evident = evident or "<!-- evidence: " in section or COMMAND.search(section) is not None
+            if not links or (row.start() > claims and not evident):
+                problems.append(f"{cells[0]}: no figure with a record, and no command")
+        return problems if rows > 20 else [*problems, "fewer rows than the page has had"]
+
+    def setUp(self):
+        self.text = (SOURCE / "docs/requirements.md").read_text(encoding="utf-8")
+
+    def test_tests_and_figures_exist(self):
+        self.assertEqual(self.problems(self.text), [])
+
+    def test_every_wrong_name_and_link_is_found(self):
+        for place in re.finditer(r"`([\w/]+\.[\w/]+|Gwyddion\w*|LensFiles|fuzz_corpus)`", self.text):
+            with self.subTest(test=place[1]):
+                twin = self.text[:place.end() - 1] + "x" + self.text[place.end() - 1:]
+                self.assertEqual(len(self.problems(twin)), 1)
+        for place in re.finditer(r"\(([\w.]+\.md#[^)]*)\)", self.text):
+            with self.subTest(link=place[1]):
+                twin = self.text[:place.end() - 1] + "x" + self.text[place.end() - 1:]
+                self.assertIn("no page or heading", self.problems(twin)[0])
+
+    def test_a_claim_without_figure_or_command_is_found(self):
+        twin = self.text.replace("[camera](validation.md#the-camera)", "[limits](assessment.md#limits-to-know)")
+        self.assertIn("no figure with a record", self.problems(twin)[0])
+        self.assertEqual(len(self.problems(self.text.replace("`camera.Camera`, `camera.PhotonTransfer`", "none"))), 1)
+
+
 def list_older_records():
     older = [f"{name}.{run}: {reason}" for name, page in PAGES.items() for run, reason in page.stale()]
     runs = sum(len(page.runs) for page in PAGES.values())

@@ -1,12 +1,15 @@
 #include "measurement/calibration/calibrate.hpp"
 
+#include "core/files/digest.hpp"
 #include "core/files/result_folder.hpp"
 #include "core/messages/heartbeat.hpp"
 #include "core/messages/json_text.hpp"
 #include "core/messages/warning.hpp"
 #include "measurement/calibration/certificate.hpp"
+#include "measurement/calibration/digital_certificate.hpp"
 #include "measurement/calibration/tested_instrument.hpp"
 #include "measurement/sweep/sweep_rows.hpp"
+#include "surface_files/provenance.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -127,7 +130,11 @@ CalibrationResult calibrate(const CalibrationRequest& request, Progress& progres
         certificate.entries.push_back(std::move(entry));
     }
     CalibrationResult result{.certificate = certificate_json(certificate), .folder = results.path()};
-    results.write("certificate.json", json_text(result.certificate) + "\n");
+    const std::string json = json_text(result.certificate) + "\n";
+    const std::string date = surface::source_date();
+    results.write("certificate.json", json);
+    results.write("certificate.xml", digital_certificate(certificate, "vkfv-" + Digest().add(json).sha256(),
+                                                         date.substr(0, date.find('T'))));
     results.write("certificate.html", certificate_page(certificate));
     results.write_checksums();
     return result;

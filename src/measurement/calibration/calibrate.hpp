@@ -26,9 +26,9 @@ struct CalibrationResult {
     std::filesystem::path folder;
 };
 
-// Measures the standards that the output folder lacks, each in a folder of its own, and writes certificate.json and
-// certificate.html there. Throws InputError before the first standard is traced, and what a stack throws; the same call
-// continues.
+// Measures the standards that the output folder lacks, each in a folder of its own, and writes certificate.json,
+// certificate.xml and certificate.html there. Throws InputError before the first standard is traced, and what a stack
+// throws; the same call continues.
 CalibrationResult calibrate(const CalibrationRequest& request, Progress& progress);
 
 // The figures as lines of text.

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
 #include <cmath>
 
 namespace vkfv::measurement {
@@ -15,25 +14,6 @@ namespace vkfv::measurement {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Quantities that the standards were chosen by: key in certificate.json, words, and value (um but for the last).
-struct ConditionRow {
-    const char* key;
-    const char* words;
-    double value;
-};
-
-std::array<ConditionRow, 9> rows_of(const Conditions& c) {
-    return {{{"pixel_um", "pixel on the specimen / µm", c.pitch * um_per_mm},
-             {"window_um", "focus window / µm", c.window * um_per_mm},
-             {"optical_resolution_um", "0.61 λ / NA / µm", c.resolution * um_per_mm},
-             {"scan_range_um", "scan / µm", c.range * um_per_mm},
-             {"scan_step_um", "step / µm", c.step * um_per_mm},
-             {"focus_curve_deviation_um", "standard deviation of a focus curve / µm", c.curve_deviation * um_per_mm},
-             {"s_filter_um", "nesting index of the S-filter / µm", c.s_filter() * um_per_mm},
-             {"pixels_x", "pixels along x", static_cast<double>(c.pixels.columns)},
-             {"pixels_y", "pixels along y", static_cast<double>(c.pixels.rows)}}};
-}
 
 Json json_of(const CertificateFigure& figure) {
     return {{"key", figure.key},
@@ -94,6 +74,18 @@ void add_table(report::Page& page, const CertificateTable& table) {
 
 } // namespace
 
+std::array<ConditionRow, 9> condition_rows(const Conditions& c) {
+    return {{{"pixel_um", "pixel on the specimen", "um", c.pitch * um_per_mm},
+             {"window_um", "focus window", "um", c.window * um_per_mm},
+             {"optical_resolution_um", "0.61 λ / NA", "um", c.resolution * um_per_mm},
+             {"scan_range_um", "scan", "um", c.range * um_per_mm},
+             {"scan_step_um", "step", "um", c.step * um_per_mm},
+             {"focus_curve_deviation_um", "standard deviation of a focus curve", "um", c.curve_deviation * um_per_mm},
+             {"s_filter_um", "nesting index of the S-filter", "um", c.s_filter() * um_per_mm},
+             {"pixels_x", "pixels along x", "", static_cast<double>(c.pixels.columns)},
+             {"pixels_y", "pixels along y", "", static_cast<double>(c.pixels.rows)}}};
+}
+
 std::string scan_text(const Conditions& conditions) {
     return fmt::format("{:.3g} µm of the scan, in steps of {:.3g} µm", conditions.range * um_per_mm,
                        conditions.step * um_per_mm);
@@ -101,8 +93,10 @@ std::string scan_text(const Conditions& conditions) {
 
 std::vector<std::vector<std::string>> conditions_table(const Conditions& conditions) {
     std::vector<std::vector<std::string>> table{{"", "value"}};
-    for (const auto& row : rows_of(conditions)) {
-        table.push_back({row.words, report::reader_number(row.value)});
+    for (const auto& row : condition_rows(conditions)) {
+        const std::string unit = report::reader_unit(row.unit);
+        table.push_back(
+            {unit.empty() ? row.words : fmt::format("{} / {}", row.words, unit), report::reader_number(row.value)});
     }
     return table;
 }
@@ -117,7 +111,7 @@ nlohmann::ordered_json certificate_json(const Certificate& certificate) {
                  {"first_seed", certificate.conditions.seed},
                  {"small", certificate.conditions.small},
                  {"camera", certificate.conditions.camera}};
-    for (const auto& row : rows_of(certificate.conditions)) {
+    for (const auto& row : condition_rows(certificate.conditions)) {
         json["conditions"][row.key] = row.value;
     }
     json["characteristics"] = Json::array();
@@ -126,6 +120,7 @@ nlohmann::ordered_json certificate_json(const Certificate& certificate) {
                     {"title", entry.characteristic->title},
                     {"standard", entry.characteristic->standard},
                     {"procedure", entry.characteristic->procedure},
+                    {"equation", entry.characteristic->equation},
                     {"figures", Json::array()},
                     {"tables", Json::array()},
                     {"remarks", entry.findings.remarks},

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,15 @@ inline constexpr const char* smooth_standards =
 
 // The part of the scan that a measurement covered, in words: "33 µm of the scan, in steps of 1.1 µm".
 std::string scan_text(const Conditions& conditions);
+
+// A property of the instrument that the standards were chosen by.
+struct ConditionRow {
+    const char* key;   // in certificate.json, with its unit
+    const char* words; // without its unit
+    const char* unit;  // "um" or none
+    double value;
+};
+std::array<ConditionRow, 9> condition_rows(const Conditions& conditions);
 
 // The conditions of the measurements as the rows of a table, with its head.
 std::vector<std::vector<std::string>> conditions_table(const Conditions& conditions);

@@ -6,13 +6,17 @@
 
 namespace vkfv::measurement {
 
-double CertificateFigure::expanded_uncertainty() const {
+double CertificateFigure::coverage_factor() const {
     constexpr double both_sides_95 = 0.975, as_good_as_normal = 1e6;
-    if (!(degrees_of_freedom > 0) || !std::isfinite(standard_uncertainty)) {
+    if (!(degrees_of_freedom > 0)) {
         return surface::undefined;
     }
     const boost::math::students_t student(std::min(degrees_of_freedom, as_good_as_normal));
-    return boost::math::quantile(student, both_sides_95) * standard_uncertainty;
+    return boost::math::quantile(student, both_sides_95);
+}
+
+double CertificateFigure::expanded_uncertainty() const {
+    return std::isfinite(standard_uncertainty) ? coverage_factor() * standard_uncertainty : surface::undefined;
 }
 
 const std::vector<Characteristic>& characteristics() {

@@ -70,7 +70,10 @@ struct CertificateFigure {
     double standard_uncertainty = surface::undefined;
     double degrees_of_freedom = std::numeric_limits<double>::infinity();
 
-    // The half width of the interval that covers 95 %, by Student's distribution.
+    // The factor k by Student's distribution, so that an interval of the half width k u covers 95 %; NaN without
+    // degrees of freedom.
+    double coverage_factor() const;
+    // The half width k u of that interval.
     double expanded_uncertainty() const;
 };
 
@@ -92,6 +95,7 @@ struct Characteristic {
     std::string title;     // "measurement noise"
     std::string standard;  // a sentence: what is measured
     std::string procedure; // sentences: how the figures come from it
+    std::string equation;  // the same in LaTeX
     bool lateral = false;  // needs the larger field of a small calibration
     // The trials in their order. None if the instrument cannot measure any such standard: a remark then says why.
     std::vector<Trial> (*trials)(const Conditions& conditions, std::vector<std::string>& remarks);

@@ -190,6 +190,7 @@ Characteristic flatness_deviation() {
                          "rest. The scatter between places, of noise and texture, would alone give the expected "
                          "range of a normal field as smooth as the filter makes it. The standard uncertainty is that "
                          "of the bootstrap over the places.",
+            .equation = R"(z_{FLT} = S_z\left(\frac{1}{n} \sum_{i = 1}^{n} z_i\right))",
             .trials = of_flatness::trials,
             .evaluate = of_flatness::evaluate};
 }

@@ -124,6 +124,9 @@ Characteristic lateral_mapping() {
                          "perpendicularity at the middle of the scan; the largest distance that it leaves is the "
                          "mapping deviation. Uncertainties are those of the nodes' scatter about the map, which "
                          "includes the deviations themselves.",
+            .equation = R"(\binom{x_i}{y_i} = \begin{pmatrix} \alpha_x & s \\ t & \alpha_y \end{pmatrix} )"
+                        R"(\binom{x_{i, \mathrm{nominal}}}{y_{i, \mathrm{nominal}}} + \vec{b} + )"
+                        R"(\vec{e}_i, \quad \sum_i |\vec{e}_i|^2 = \min)",
             .lateral = true,
             .trials = of_lattices::trials,
             .evaluate = of_lattices::evaluate};

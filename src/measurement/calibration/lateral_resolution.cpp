@@ -205,6 +205,8 @@ Characteristic lateral_resolution() {
             "The transfer is the measured over the true amplitude, each by a least-squares fit, averaged "
             "over the directions; its uncertainty is their scatter. D_LIM is the period at which it falls "
             "to one half, linear in the frequency between the periods. On the star the transfer is found in rings.",
+        .equation = R"(\frac{A_{\mathrm{measured}}(D_{LIM})}{A_{\mathrm{true}}(D_{LIM})} = )"
+                    R"(\frac{1}{2})",
         .lateral = true,
         .trials = of_transfer::trials,
         .evaluate = of_transfer::evaluate};

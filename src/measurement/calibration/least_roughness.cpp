@@ -116,6 +116,7 @@ Characteristic least_roughness() {
             .procedure = "Measured and true heights are levelled and S-filtered alike. The limit is the true Sq below "
                          "which the measured one is off by more than 10 %, between the roughnesses tried by the "
                          "logarithm.",
+            .equation = R"(\left|\frac{S_{q, \mathrm{measured}}}{S_{q, \mathrm{true}}} - 1\right| = 0.1)",
             .lateral = true,
             .trials = of_roughness::trials,
             .evaluate = of_roughness::evaluate};

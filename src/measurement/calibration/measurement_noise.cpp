@@ -130,6 +130,7 @@ Characteristic measurement_noise() {
             .procedure = "The difference of each pair of measurements is levelled by its least-squares plane; its Sq "
                          "over the square root of 2 is the noise. N_M is the root mean square over all pairs, and its "
                          "standard uncertainty that of the jackknife over the measurements.",
+            .equation = R"(N_M = \sqrt{\frac{1}{n (n - 1)} \sum_{i < j} S_q^2(z_i - z_j)})",
             .trials = of_noise::trials,
             .evaluate = of_noise::evaluate};
 }

@@ -140,6 +140,9 @@ Characteristic repeatability() {
                         "place.",
             .procedure = "One-way analysis of variance of the errors of the depth: the repeatability is the standard "
                          "deviation within places, and the reproducibility adds the variance between them.",
+            .equation = R"(s_r^2 = \frac{1}{g (n - 1)} \sum_{i = 1}^{g} \sum_{j = 1}^{n} (e_{ij} - )"
+                        R"(\bar{e}_i)^2, \quad s_R^2 = s_r^2 + \max\left(0, \frac{1}{g - 1} \sum_{i = )"
+                        R"(1}^{g} (\bar{e}_i - \bar{e})^2 - \frac{s_r^2}{n}\right))",
             .trials = of_repetitions::trials,
             .evaluate = of_repetitions::evaluate};
 }

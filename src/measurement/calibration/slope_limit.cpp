@@ -97,6 +97,7 @@ Characteristic slope_limit() {
                 "plane taken off. The limit is the steepest "
                 "slope up to which 95 % are measured and right; its uncertainty is that of the steps between "
                 "the slopes. The print is laid on along the axis, so that it is stretched along a slope.",
+            .equation = R"(P\left(|z - z_{\mathrm{true}} - c| \le 3 u(z)\right) \ge 0.95)",
             .trials = of_slopes::trials,
             .evaluate = of_slopes::evaluate};
 }

@@ -121,6 +121,8 @@ Characteristic vertical_amplification() {
                          "own, which takes what all depths have in common, such as the flatness deviation. The "
                          "uncertainty of alpha_z is that of the scatter about the line, that of l_z the stated "
                          "uncertainty of a depth.",
+            .equation = R"(d_i = \alpha_z d_{i, \mathrm{true}} + b + e_i, \quad \sum_i e_i^2 = \min, )"
+                        R"(\quad l_z = \max_i |e_i|)",
             .trials = of_depths::trials,
             .evaluate = of_depths::evaluate};
 }

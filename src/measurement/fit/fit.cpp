@@ -196,7 +196,7 @@ std::vector<FittedParameter> Fit::fitted() const {
             one.standard_uncertainty = std::abs(slope) * deviation * enlargement();
             one.low = parameter.value(place - factor * deviation);
             one.high = parameter.value(place + factor * deviation);
-            one.told = deviation * enlargement() <= of_fit::told_share * parameter.known_width(place);
+            one.told = search.settled && deviation * enlargement() <= of_fit::told_share * parameter.known_width(place);
             if (fit.bound.rows > k && fit.bound(k, k) > 0) {
                 one.bound = std::abs(slope) * std::sqrt(fit.bound(k, k));
                 one.uncertainty_ratio = deviation / std::sqrt(fit.bound(k, k));

@@ -35,7 +35,8 @@ struct FitRequest {
 // A parameter as it was found, in the unit of its key.
 struct FittedParameter {
     FreeParameter parameter{};
-    // Whether the stack tells it: its standard uncertainty is at most a third of the range known beforehand.
+    // Whether the stack tells it: the search has settled, and its standard uncertainty is at most a third of the range
+    // known beforehand.
     bool told = false;
     bool determined = false; // false: the stack holds no information, and the numbers below are NaN
     double estimate = 0;

@@ -72,13 +72,13 @@ void add_verdict(const Fit& fit, std::vector<std::string>& remarks) {
     }
 }
 
-void add_untold(const std::vector<FittedParameter>& parameters, std::vector<std::string>& remarks) {
-    for (const FittedParameter& one : parameters) {
+void add_untold(const Fit& fit, std::vector<std::string>& remarks) {
+    for (const FittedParameter& one : fit.fitted()) {
         if (!one.determined) {
             remarks.push_back(fmt::format("The stack does not tell {}: no statistic follows it beyond chance, and it "
                                           "was held at {:.4g} or near it.",
                                           one.parameter.key, one.parameter.start));
-        } else if (!one.told) {
+        } else if (!one.told && fit.search.settled) {
             remarks.push_back(fmt::format(
                 "The stack does not tell {}: its standard uncertainty is more than a third of what is known beforehand "
                 "({}).",
@@ -203,12 +203,13 @@ std::vector<std::string> remarks_of(const Fit& fit) {
     using namespace of_fit_documents;
     std::vector<std::string> remarks;
     add_verdict(fit, remarks);
-    add_untold(fit.fitted(), remarks);
+    add_untold(fit, remarks);
     add_correlations(fit, remarks);
     if (!fit.search.settled) {
         remarks.emplace_back(
             "The search has not settled: the last change is larger than the steps by which slopes were "
-            "taken. Begin nearer, with --start.");
+            "taken, so that estimates lie beyond the places that were tried, and none is told. Begin nearer, with "
+            "--start.");
     }
     if (!fit.layout.brightness) {
         remarks.emplace_back("The brightness of the whole stack does not count, since exposure and gain of the images "
@@ -284,8 +285,8 @@ std::string fit_page(const Fit& fit, const std::string& configuration) {
     page.paragraph(
         "Intervals of 95 % by Student's distribution. The Cramér-Rao bound is the least standard uncertainty that any "
         "unbiased estimate by these statistics can have, if they are normal. Both are known by the replicates alone, "
-        "so that their ratio may be below 1 by chance. A parameter is told if its standard uncertainty is at most a "
-        "third of what is known of it beforehand.");
+        "so that their ratio may be below 1 by chance. A parameter is told if the search has settled and its "
+        "standard uncertainty is at most a third of what is known of it beforehand.");
     add_correlation_table(page, fit);
     page.section("statistics", "Statistics");
     page.paragraph("Measured, and as the fitted model makes them in the mean, with the range of 95 % of measurements. "

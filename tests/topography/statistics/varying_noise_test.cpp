@@ -77,6 +77,7 @@ std::vector<Case> cases() {
     const auto narrow = [](double at) { return bell(at, 0.6, 0.08); };
     const auto wide = [](double at) { return bell(at, 0.5, 0.2); };
     const auto strong = [](double at) { return 1 + 9 * std::exp(-0.5 * std::pow((at - 0.5) / 0.05, 2)); };
+    const auto brief = [](double at) { return 1 + 9 * std::exp(-0.5 * std::pow((at - 0.5) / 0.03, 2)); };
     const auto ramp = [](double at) { return 1 + at; };
     const auto step = [](double at) { return at < 0.5 ? 1.0 : 1.6; };
     const auto pulse = [](double at) { return std::abs(at - 0.5) < 0.15 ? 2.0 : 1.0; };
@@ -91,7 +92,32 @@ std::vector<Case> cases() {
             {.name = "8 bits", .noise = wide, .deviation = 0.004, .grey_value = 1.0 / 120},
             {.name = "8 bits, little noise", .noise = pulse, .deviation = 0.002, .grey_value = 1.0 / 120},
             {.name = "dust", .noise = wide, .pattern = 0.01},
-            {.name = "compressed little", .noise = wide, .grey_value = 1.0 / 120, .quantum = 0.02}};
+            {.name = "compressed little", .noise = wide, .grey_value = 1.0 / 120, .quantum = 0.02},
+            {.name = "compressed", .noise = strong, .deviation = 0.01, .grey_value = 1.0 / 120, .quantum = 0.065},
+            {.name = "compressed much", .noise = strong, .deviation = 0.01, .grey_value = 1.0 / 120, .quantum = 0.13},
+            {.name = "an image of noise, compressed",
+             .noise = brief,
+             .deviation = 0.003,
+             .grey_value = 1.0 / 120,
+             .quantum = 0.065},
+            {.name = "long scan, compressed much",
+             .noise = brief,
+             .images = 61,
+             .deviation = 0.01,
+             .grey_value = 1.0 / 120,
+             .quantum = 0.13}};
+}
+
+// Standard deviation of the texture in focus, over the brightness.
+constexpr double object_contrast = 0.1;
+
+// The largest standard deviation of a case's noise along the scan, over the brightness.
+double strongest_noise(const Case& of) {
+    double strongest = 0;
+    for (int image = 0; image < of.images; ++image) {
+        strongest = std::max(strongest, of.deviation * of.noise(static_cast<double>(image) / (of.images - 1)));
+    }
+    return strongest;
 }
 
 // Images of brightness 1. With `object` the left half has texture, in focus a little before the middle of the scan.
@@ -104,7 +130,7 @@ std::vector<Grid<float>> images_of(const Case& of, bool object, unsigned seed) {
     std::vector<Grid<float>> images;
     for (int image = 0; image < of.images; ++image) {
         const double at = static_cast<double>(image) / (of.images - 1);
-        const double contrast = object ? 0.1 * std::exp(-0.5 * std::pow((at - 0.45) / 0.1, 2)) : 0;
+        const double contrast = object ? object_contrast * std::exp(-0.5 * std::pow((at - 0.45) / 0.1, 2)) : 0;
         Grid<float>& values = images.emplace_back(side, side);
         for (int row = 0; row < side; ++row) {
             for (int column = 0; column < side; ++column) {
@@ -166,6 +192,9 @@ TEST(VaryingNoise, BesideAnObjectIsNotMeasuredAndTheObjectIs) {
     for (const Case& one : cases()) {
         if (one.images <= few_images) {
             continue; // there a few percent pass by chance, which the command says
+        }
+        if (strongest_noise(one) > 0.5 * object_contrast) {
+            continue; // there noise is a second maximum of the object's own curves
         }
         SCOPED_TRACE(one.name);
         constexpr unsigned seeds = 2;
