@@ -5,12 +5,12 @@
 namespace vkfv::app {
 
 std::vector<Command> commands() {
-    return {stack_command(),      merge_command(),      image_command(),      sweep_command(),    calibrate_command(),
-            budget_command(),     capability_command(), topography_command(), compare_command(),  surface_command(),
-            verify_command(),     check_command(),      trace_rays_command(), layout_command(),   optics_command(),
-            camera_command(),     devices_command(),    bench_command(),      import_command(),   new_command(),
-            list_command(),       keys_command(),       explain_command(),    template_command(), help_command(),
-            completion_command(), man_command()};
+    return {stack_command(),   merge_command(),      image_command(),   sweep_command(),      calibrate_command(),
+            budget_command(),  capability_command(), fit_command(),     topography_command(), compare_command(),
+            surface_command(), verify_command(),     check_command(),   trace_rays_command(), layout_command(),
+            optics_command(),  camera_command(),     devices_command(), bench_command(),      import_command(),
+            new_command(),     list_command(),       keys_command(),    explain_command(),    template_command(),
+            help_command(),    completion_command(), man_command()};
 }
 
 std::vector<TomlOverride> overrides_with_folder(const CommandOptions& options, const std::string& ending) {

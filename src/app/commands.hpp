@@ -18,6 +18,7 @@ Command sweep_command();
 Command calibrate_command();
 Command budget_command();
 Command capability_command();
+Command fit_command();
 Command topography_command();
 Command compare_command();
 Command surface_command();
@@ -64,6 +65,9 @@ void run_budget(const CommandOptions& options);
 // Measures sinusoids over wavelength and amplitude, and writes a map of what the instrument can measure beside its
 // limits. Continues one that was interrupted.
 void run_capability(const CommandOptions& options);
+// Finds the numbers of a configuration with which it makes stacks like a measured one, and writes them with their
+// uncertainties. Continues a fit that was interrupted.
+void run_fit(const CommandOptions& options);
 // Judges the configuration, and prints warnings and figures of the instrument. Opens no device except for a forecast.
 void run_check(const CommandOptions& options);
 // Traces given rays through the imaging train, as CSV.

@@ -167,6 +167,13 @@ Case camera_fault(const std::string& name, const std::string& keys, std::vector<
             std::move(message)};
 }
 
+// A fit that is refused before any image is read.
+Case fit_fault(const std::string& name, const std::vector<std::string>& options, std::vector<std::string> message) {
+    std::vector<std::string> arguments = {"fit", "photographs", "--config", "c.toml"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return {name, {}, 2, std::move(message), std::move(arguments)};
+}
+
 std::vector<Case> cases() {
     const std::vector<std::string> stack = {"--stack", "c.toml"};
     const std::vector<std::string> budget = {"budget", "c.toml", "--measurand", "Sq"};
@@ -711,6 +718,45 @@ std::vector<Case> cases() {
          2,
          {"detector.pixels", "at least four focus windows", "topography.window_px"},
          {"capability", "c.toml"}},
+        // Fits, of a stack whose images are never read.
+        fit_fault("FitOfNoKey", {"--free", "specimen.material.gg"},
+                  {"--free = specimen.material.gg", "a key of the configuration that is a number",
+                   "Did you mean specimen.material.g?"}),
+        fit_fault("FitOfAWord", {"--free", "trace.estimator"},
+                  {"--free = trace.estimator", "a key of the configuration that is a number"}),
+        fit_fault("FitOfAKeyWithoutValue", {"--free", "stage.scale_error"},
+                  {"--free = stage.scale_error", "a number that the configuration of the stack has"}),
+        fit_fault("FitOfAKeyTwice", {"--free", "specimen.material.g,specimen.material.g"},
+                  {"--free = specimen.material.g", "each key once"}),
+        fit_fault("FitOfWhatNoImageDependsOn", {"--free", "topography.s_filter_um"},
+                  {"--free = topography.s_filter_um", "a key that images depend on"}),
+        fit_fault("FitFromTheEndOfARange", {"--free", "specimen.material.g", "--start", "specimen.material.g=1"},
+                  {"specimen.material.g = a start at 1", "between the ends of its range", "--start"}),
+        fit_fault("FitFromAStartOfAnotherKey", {"--free", "specimen.material.g", "--start", "specimen.height_um=3"},
+                  {"--start = specimen.height_um", "a key that --free names"}),
+        fit_fault("FitFromAWord", {"--free", "specimen.material.g", "--start", "specimen.material.g=much"},
+                  {"--start specimen.material.g=much", "KEY=NUMBER"}),
+        fit_fault("FitByTooFewReplicates",
+                  {"--free", "specimen.material.g,specimen.roughness.noise_um", "--replicates", "8"},
+                  {"--replicates = 8 for 2 parameters", "at least 10"}),
+        {"FitOfPhotographsWithoutAConfiguration",
+         {},
+         2,
+         {"photographs, which has no stack.toml", "--config"},
+         {"fit", "photographs", "--free", "specimen.material.g"},
+         photographs},
+        {"FitOfPhotographsOfAnotherScan",
+         {},
+         2,
+         {"3 images", "5, as many as the configuration makes", "[scan]"},
+         {"fit", "photographs", "--config", "c.toml", "--free", "specimen.material.g", "--replicates", "8"},
+         photographs},
+        {"FitOfPhotographsOfOtherPixels",
+         {{"z_start_um = -2.0\nz_stop_um = 2.0", "z_start_um = -1.0\nz_stop_um = 1.0"}},
+         2,
+         {"images of 2 x 2 pixels", "the 8 x 8 of the configuration, or a whole multiple"},
+         {"fit", "photographs", "--config", "c.toml", "--free", "specimen.material.g", "--replicates", "8"},
+         photographs},
         // Uncertain numbers.
         {"UncertaintyOfNothing", {}, 2, {"uncertainty", "stage.scale_error"}, budget},
         {"UncertaintyOfNoKey",

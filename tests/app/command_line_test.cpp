@@ -62,6 +62,7 @@ TEST(CommandLine, ACommandIsItsOption) {
                                       {"calibrate", "c.toml", "--only", "N_X"},
                                       {"budget", "c.toml", "--measurand", "Sq"},
                                       {"capability", "c.toml"}, // too short a scan
+                                      {"fit", "out", "--free", "specimen.height"},
                                       {"topography", "out", "--set", "trace.seed=9"},
                                       {"topography", "nowhere"},
                                       {"compare", "out/topography.tif", "out/truth.tif", "--json"},
@@ -187,6 +188,9 @@ TEST(CommandLine, AnOptionOfAnotherCommandIsRefused) {
             }
             if (command.name == "budget") {
                 words.insert(words.end(), {"--measurand", "Sq"});
+            }
+            if (command.name == "fit") {
+                words.insert(words.end(), {"--free", "specimen.height_um"});
             }
             const std::string refusal =
                 option->needed.empty()

@@ -49,7 +49,7 @@ def objects(node):
 
 class SchemaTest(unittest.TestCase):
     def test_schemas_are_schemas(self):
-        for name in ("results", "sweep", "image", "certificate", "budget", "capability"):
+        for name in ("results", "sweep", "image", "certificate", "budget", "capability", "fit"):
             jsonschema.Draft202012Validator.check_schema(schema(name))
             for described in objects(schema(name)):
                 self.assertIn("additionalProperties", described)
@@ -147,6 +147,18 @@ class SchemaTest(unittest.TestCase):
             self.assertIn("window", shortest.beyond_limits)
             self.assertGreater(capability.specimen["sq_um"], 0)
             self.assertIn("4 sinusoids", repr(capability))
+
+    def test_fit(self):
+        """How Lambertian a plane is, from a stack of few rays."""
+        with tempfile.TemporaryDirectory() as folder:
+            scan = {"z_start_um": -6.0, "z_stop_um": 6.0, "z_step_um": 6.0}
+            stack = vkfv.run(shared.configuration(), out=Path(folder) / "s", scan=scan, **shared.SMALL)
+            fit = vkfv.fit(stack.folder, ["specimen.material.g"], out=Path(folder) / "f", replicates=8)
+            validate(fit.content, "fit")
+            self.assertEqual(undocumented(Path(folder) / "f", "fit"), [])
+            self.assertEqual(fit.parameters["specimen.material.g"].start, 0.8)
+            self.assertEqual([len(row) for row in fit.covariance], [1])
+            self.assertIn("specimen.material.g", repr(fit))
 
 
 class FilesTest(unittest.TestCase):

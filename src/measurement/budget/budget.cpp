@@ -9,6 +9,7 @@
 #include "measurement/budget/input_draws.hpp"
 #include "measurement/calibration/certificate.hpp"
 #include "measurement/scene/assembly.hpp"
+#include "measurement/scene/configured_numbers.hpp"
 #include "measurement/scene/known_truth.hpp"
 #include "measurement/stack/stack.hpp"
 #include "measurement/sweep/sweep_rows.hpp"
@@ -38,16 +39,6 @@ struct Run {
     int texture = 0;                // 0: the configuration's
 };
 
-// The number that a configuration's text gives to a dotted key; none: it has no such number.
-std::optional<double> number_of(const TomlTable& root, const std::string& key) {
-    const auto dot = key.find('.');
-    if (dot == std::string::npos) {
-        return root.optional_number(key);
-    }
-    const auto below = root.optional_table(key.substr(0, dot));
-    return below ? number_of(*below, key.substr(dot + 1)) : std::nullopt;
-}
-
 std::string folder_name(std::string key) {
     std::ranges::replace(key, '.', '_');
     return key;
@@ -55,10 +46,9 @@ std::string folder_name(std::string key) {
 
 // The values of the inputs in the configuration as it is read, defaults included.
 std::vector<double> values_of(const Configuration& configuration) {
-    const auto table = TomlTable::parse(configuration.canonical, configuration.file);
     std::vector<double> values;
     for (const UncertainInput& input : configuration.uncertainty.inputs) {
-        const auto value = number_of(table, input.key);
+        const auto value = number_in(configuration, input.key);
         if (!value) {
             throw InputError({.where = configuration.places.at("uncertainty." + input.key),
                               .key = "uncertainty." + input.key,
@@ -85,19 +75,6 @@ Base base_of(const BudgetRequest& request) {
         base.configuration = load_configuration(request.file, base.overrides);
     }
     return base;
-}
-
-// Those of the keys that the configuration has, with their values.
-std::map<std::string, std::uint32_t> seeds_in(const Configuration& configuration,
-                                              const std::vector<std::string>& keys) {
-    const auto table = TomlTable::parse(configuration.canonical, configuration.file);
-    std::map<std::string, std::uint32_t> seeds;
-    for (const std::string& key : keys) {
-        if (const auto value = number_of(table, key)) {
-            seeds.emplace(key, static_cast<std::uint32_t>(*value));
-        }
-    }
-    return seeds;
 }
 
 // The seeds of what nobody knows of a specimen: its texture.

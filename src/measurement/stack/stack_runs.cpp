@@ -163,21 +163,47 @@ StackResult StackRuns::trace_and_evaluate(const StackScene& scene, const Working
             .device = identity.text()};
 }
 
-StackResult StackRuns::measure(const Configuration& configuration, Progress& progress, const StackAmongOthers& others) {
-    WorkingDevices& devices = devices_of(configuration);
+void StackRuns::take_light(const Configuration& configuration, bool keep_surface) {
     const std::string key = light_key(configuration);
     if (!light_ || light_->key != key) {
         light_.reset(); // frees its memory before the next light takes its own
         // The next stack, of another material or instrument, may have the same surface.
         light_ = Light{.key = key,
-                       .parts = StackScene::make_parts(configuration, others.more ? &surfaces_ : nullptr),
+                       .parts = StackScene::make_parts(configuration, keep_surface ? &surfaces_ : nullptr),
                        .tracer = nullptr};
     }
+}
+
+StackResult StackRuns::measure(const Configuration& configuration, Progress& progress, const StackAmongOthers& others) {
+    WorkingDevices& devices = devices_of(configuration);
+    take_light(configuration, others.more);
     const StackScene scene(configuration, light_->parts);
     log_warnings(scene.planned);
     StackResult result;
     work_with_devices(
         devices, [&](const WorkingDevices& working) { result = trace_and_evaluate(scene, working, others, progress); });
+    return result;
+}
+
+StackRuns::Traced StackRuns::trace(const Configuration& configuration, Progress& progress,
+                                   const scan::ImageVisitor& visit) {
+    WorkingDevices& devices = devices_of(configuration);
+    take_light(configuration, true);
+    const StackScene scene(configuration, light_->parts);
+    log_warnings(scene.planned);
+    Traced result;
+    work_with_devices(devices, [&](const WorkingDevices& working) {
+        enter_stage("device, kernels");
+        const auto tracer = make_tracer(working, configuration, scene.instrument, scene.specimen);
+        const trace::TracerIdentity identity = tracer->identity();
+        scan::ImageStore store(configuration.output_directory, scene.description(identity));
+        require_space(store, 0);
+        const auto develop = developer_of(scene, store, working);
+        enter_stage("images");
+        result = {.traced =
+                      scan::run_stack(*tracer, store, progress, visit, configuration.checkpoint_interval, develop),
+                  .device = identity.text()};
+    });
     return result;
 }
 

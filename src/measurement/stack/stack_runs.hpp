@@ -41,6 +41,15 @@ class StackRuns {
     // continues.
     StackResult measure(const Configuration& configuration, Progress& progress, const StackAmongOthers& others = {});
 
+    struct Traced {
+        scan::StackSummary traced; // images that this run traced or found
+        std::string device;        // that traced the images
+    };
+    // Traces a stack's images as measure() does, to the same bits, and evaluates nothing. `visit` sees each image once
+    // in order, and again from the first where a device failed. Throws as measure_stack() does; the same call
+    // continues.
+    Traced trace(const Configuration& configuration, Progress& progress, const scan::ImageVisitor& visit);
+
     // The devices that the configuration asks for; open devices are used again.
     WorkingDevices& devices_of(const Configuration& configuration);
 
@@ -52,6 +61,8 @@ class StackRuns {
         std::unique_ptr<trace::Tracer> tracer; // null: to be made
     };
 
+    // Makes the parts of this light, unless those at hand are the same. keep_surface: another stack may have it too.
+    void take_light(const Configuration& configuration, bool keep_surface);
     StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& devices,
                                    const StackAmongOthers& others, Progress& progress);
 

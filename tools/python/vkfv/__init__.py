@@ -13,8 +13,9 @@ from .array import Array
 from .budget import Budget
 from .capability import Capability
 from .certificate import Certificate
-from .commands import Image, budget, calibrate, capability, check, evaluate, image, run, sweep
+from .commands import Image, budget, calibrate, capability, check, evaluate, fit, image, run, sweep
 from .errors import DeviceError, Error, FolderInUse, InputError, RunError, RunWarning
+from .fit import Fit
 from .focus import focus_curves
 from .program import find_program
 from .stack import PointState, Stack
@@ -30,6 +31,7 @@ __all__ = [
     "Certificate",
     "DeviceError",
     "Error",
+    "Fit",
     "FolderInUse",
     "Image",
     "InputError",
@@ -44,6 +46,7 @@ __all__ = [
     "check",
     "evaluate",
     "find_program",
+    "fit",
     "focus_curves",
     "image",
     "read_x3p",

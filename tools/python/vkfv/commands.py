@@ -9,13 +9,14 @@ RunWarning, and raises InputError, DeviceError, RunError or FolderInUse if the p
 
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from .array import Array
 from .budget import Budget
 from .capability import Capability
 from .certificate import Certificate
+from .fit import Fit
 from .overrides import settings
 from .program import Event, Outcome, call
 from .stack import Stack
@@ -168,6 +169,31 @@ def capability(
     options += (*(("--small",) if small else ()), "--json")
     outcome = _call("capability", config, overrides, out=out, options=options, program=program, on_event=on_event)
     return Capability(outcome.folder)
+
+
+def fit(
+    stack: PathLike,
+    free: Sequence[str],
+    *,
+    config: PathLike | None = None,
+    out: PathLike | None = None,
+    start: Mapping[str, float] | None = None,
+    replicates: int = 24,
+    descending: bool = False,
+    program: PathLike | None = None,
+    on_event: Callable[[Event], None] | None = None,
+    **overrides,
+) -> Fit:
+    """Finds the numbers of a configuration with which it makes stacks like this one (`vkfv fit`), or continues.
+
+    stack: folder of a stack of vkfv; with config also images. free: keys that are numbers. start: where the search for a key
+    begins. replicates: stacks of the model by which scatter is known. descending: the first of the images is the highest.
+    """
+    options = ("--free", ",".join(free), "--replicates", str(replicates), "--json")
+    options += tuple(word for key, value in (start or {}).items() for word in ("--start", f"{key}={value!r}"))
+    options += (*(("--config", os.fspath(config)) if config is not None else ()), *(("--descending",) if descending else ()))
+    outcome = _call("fit", stack, overrides, out=out, options=options, program=program, on_event=on_event)
+    return Fit(outcome.folder)
 
 
 def evaluate(
