@@ -76,7 +76,7 @@ Configuration ModelStacks::configuration(const std::vector<double>& place, int s
     for (const auto& [key, first] : seeds_) { // the base's own seeds may be those of the measured stack
         overrides.push_back({key, fmt::format("{}", first + 1 + static_cast<std::uint32_t>(seed)), "fit"});
     }
-    Configuration model = load_configuration(file_, overrides, Needs::stack);
+    const Configuration model = load_configuration(file_, overrides, Needs::stack);
     const auto images = model.scan->positions().size();
     const ImageSize pixels = model.instrument.detector_pixels;
     if (images != static_cast<std::size_t>(layout_.images) || pixels != layout_.pixels) {
