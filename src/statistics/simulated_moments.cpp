@@ -36,6 +36,23 @@ struct Estimate {
     bool solved = false; // false: the slopes do not tell the parameters apart
 };
 
+struct Scatter {
+    double mean = 0, deviation = 0;
+};
+
+// Mean and standard deviation of a statistic over runs.
+Scatter scatter_of(const std::vector<std::vector<double>>& runs, std::size_t statistic) {
+    double mean = 0, square = 0;
+    const auto count = static_cast<double>(runs.size());
+    for (const auto& run : runs) {
+        mean += run[statistic] / count;
+    }
+    for (const auto& run : runs) {
+        square += (run[statistic] - mean) * (run[statistic] - mean) / (count - 1);
+    }
+    return {.mean = mean, .deviation = std::sqrt(square)};
+}
+
 MatrixXd matrix_of(const std::vector<std::vector<double>>& rows, const std::vector<Index>& kept,
                    const VectorXd& deviation) {
     MatrixXd matrix(static_cast<Index>(rows.size()), static_cast<Index>(kept.size()));
@@ -139,15 +156,30 @@ Estimate estimate_by(const Scaled& scaled, const std::vector<double>& steps, con
     estimate.basis = directions(slopes, scaled.components, centre.rows());
     estimate.scatter = covariance_of(about * estimate.basis);
     estimate.weights = MatrixXd::Zero(estimate.slopes.cols(), estimate.slopes.rows());
+    if (used.empty()) { // Eigen's decompositions take no empty matrix
+        estimate.solved = true;
+        return estimate;
+    }
     const MatrixXd reduced = estimate.basis.transpose() * slopes;
     const Eigen::LDLT<MatrixXd> scatter(estimate.scatter);
     const MatrixXd weighted = scatter.solve(reduced); // C^-1 J
     const MatrixXd normal = reduced.transpose() * weighted;
-    const Eigen::FullPivLU<MatrixXd> solver(normal);
-    constexpr double least_reciprocal_condition = 1e-12;
-    estimate.solved = normal.allFinite() && (used.empty() || solver.rcond() > least_reciprocal_condition);
-    if (estimate.solved && !used.empty()) {
-        const MatrixXd weights = solver.solve(weighted.transpose() * estimate.basis.transpose());
+    // With a diagonal of ones the least eigenvalue tells how alike the parameters' effects are, however much better one
+    // of them is told than another. A matrix that is singular to rounding must not pass: one of its parameters would
+    // get the variance 0.
+    const VectorXd unit = normal.diagonal().cwiseSqrt().cwiseInverse();
+    const MatrixXd alike = unit.asDiagonal() * normal * unit.asDiagonal();
+    if (!alike.allFinite()) { // a parameter moves nothing
+        return estimate;
+    }
+    constexpr double least_eigenvalue = 1e-10;
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(alike); // ascending
+    estimate.solved = solver.info() == Eigen::Success && solver.eigenvalues()[0] > least_eigenvalue;
+    if (estimate.solved) {
+        const MatrixXd inverse = solver.eigenvectors() * solver.eigenvalues().cwiseInverse().asDiagonal() *
+                                 solver.eigenvectors().transpose();
+        const MatrixXd weights =
+            unit.asDiagonal() * inverse * unit.asDiagonal() * weighted.transpose() * estimate.basis.transpose();
         for (Index k = 0; k < slopes.cols(); ++k) {
             estimate.weights.row(used[static_cast<std::size_t>(k)]) = weights.row(k);
         }
@@ -219,6 +251,9 @@ MatrixXd inverse_over(const MatrixXd& information, const std::vector<bool>& chos
         }
     }
     const auto count = static_cast<Index>(used.size());
+    if (count == 0) {
+        return {};
+    }
     MatrixXd part(count, count);
     for (Index row = 0; row < count; ++row) {
         for (Index column = 0; column < count; ++column) {
@@ -227,7 +262,7 @@ MatrixXd inverse_over(const MatrixXd& information, const std::vector<bool>& chos
         }
     }
     const Eigen::LLT<MatrixXd> root(part);
-    if (count == 0 || root.info() != Eigen::Success) {
+    if (root.info() != Eigen::Success) {
         return {};
     }
     const MatrixXd inverse = root.solve(MatrixXd::Identity(count, count));
@@ -270,27 +305,21 @@ MomentFit fit_moments(const ModelRuns& runs, const std::vector<double>& measured
     using namespace of_simulated_moments;
     require_shapes(runs, measured);
     const auto parameters = static_cast<Index>(runs.steps.size()), seeds = static_cast<Index>(runs.centre.size());
-    MomentFit fit{.determined = std::vector<bool>(runs.steps.size(), true), .degrees_of_freedom = 0};
+    MomentFit fit{.determined = std::vector<bool>(runs.steps.size(), true),
+                  .alike = std::vector<bool>(runs.steps.size(), false)};
     // Statistics are measured in their standard deviations; one that never differs tells nothing by its scatter.
     std::vector<Index> kept;
     std::vector<double> deviations;
     kept.reserve(measured.size());
     deviations.reserve(measured.size());
-    fit.deviation.assign(measured.size(), 0);
+    fit.deviation.reserve(measured.size());
     for (std::size_t k = 0; k < measured.size(); ++k) {
-        double mean = 0, square = 0;
-        const auto pilots = static_cast<double>(runs.pilot.size());
-        for (const auto& run : runs.pilot) {
-            mean += run[k] / pilots;
-        }
-        for (const auto& run : runs.pilot) {
-            square += (run[k] - mean) * (run[k] - mean) / (pilots - 1);
-        }
-        fit.deviation[k] = std::sqrt(square);
+        const Scatter pilot = scatter_of(runs.pilot, k);
+        fit.deviation.push_back(scatter_of(runs.centre, k).deviation);
         constexpr double rounding = 1e-12;
-        if (fit.deviation[k] > rounding * (1 + std::abs(mean))) {
+        if (pilot.deviation > rounding * (1 + std::abs(pilot.mean))) {
             kept.push_back(static_cast<Index>(k));
-            deviations.push_back(fit.deviation[k]);
+            deviations.push_back(pilot.deviation);
         }
     }
     if (kept.empty()) {
@@ -316,7 +345,8 @@ MomentFit fit_moments(const ModelRuns& runs, const std::vector<double>& measured
         fit.determined[static_cast<std::size_t>(k)] = own > 0 && 1 / std::sqrt(own) < width;
     }
     estimate = estimate_by(scaled, runs.steps, all, fit.determined);
-    if (!estimate.solved) { // the parameters move the statistics in one and the same way
+    if (!estimate.solved) { // some parameters move the statistics in one and the same way
+        fit.alike = fit.determined;
         fit.determined.assign(fit.determined.size(), false);
         estimate = estimate_by(scaled, runs.steps, all, fit.determined);
     }

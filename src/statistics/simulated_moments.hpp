@@ -33,6 +33,9 @@ struct MomentFit {
     // Whether the statistics tell a parameter better than its range does. One that they do not tell stays at the point:
     // its change is 0, and its row and column in the matrices are 0.
     std::vector<bool> determined{};
+    // Parameters that the statistics would tell, were not some of them alike: these move the statistics in one and the
+    // same way to rounding, so that none is determined. All false where that is not so.
+    std::vector<bool> alike{};
     std::vector<double> change{};
     Matrix covariance{};           // of the change, by the runs' own scatter
     double degrees_of_freedom = 0; // of the covariance
@@ -45,7 +48,7 @@ struct MomentFit {
     double misfit = 0;
     double misfit_probability = 0;   // of a misfit as large or larger, if the model describes the measurement
     std::vector<double> expected{};  // statistics at the fitted parameters
-    std::vector<double> deviation{}; // standard deviations of the statistics of one measurement
+    std::vector<double> deviation{}; // standard deviations of the statistics of one measurement, at the point
 };
 
 // The fit, linear about the point of the runs. The statistics are reduced to the directions in which the parameters

@@ -228,6 +228,44 @@ TEST(FitSearch, AParameterWithoutEffectIsNotTold) {
     EXPECT_THAT(fit_page(fit, "[scan]"), HasSubstr("not traceable"));
 }
 
+// Nothing is left to estimate where the only free parameter has no effect.
+TEST(FitSearch, TheOnlyParameterHasNoEffect) {
+    Known known;
+    known.without_width = true;
+    Fit fit{.program = "vkfv", .stack = "stack", .title = "known", .replicates = 16};
+    fit.layout = {.images = 9, .pixels = ImageSize::square(8), .window = 8, .brightness = false};
+    fit.parameters = {known.parameters[1]};
+    fit.measured = known.statistics(0.3, 1, 100000);
+    fit.search = search_moments(
+        fit.parameters, fit.measured,
+        [&](const std::vector<double>& place, int seed) {
+            return known.statistics(0.3, fit.parameters[0].value(place[0]), 1 + static_cast<unsigned>(seed));
+        },
+        16);
+    EXPECT_TRUE(fit.search.settled);
+    EXPECT_FALSE(fit.fitted()[0].determined);
+    EXPECT_TRUE(std::isfinite(fit.search.fit.misfit));
+    EXPECT_THAT(remarks_of(fit), Contains(HasSubstr("held at 1, where the search left it")));
+}
+
+TEST(FitSearch, ParametersOfOneAndTheSameEffectAreTold) {
+    const Known known;
+    Fit fit{.program = "vkfv", .stack = "stack", .title = "known", .replicates = 16};
+    fit.layout = {.images = 9, .pixels = ImageSize::square(8), .window = 8, .brightness = false};
+    fit.parameters = {parameter("a", NumberRange::at_least(0), 1), parameter("b", NumberRange::at_least(0), 1)};
+    fit.measured = known.statistics(0.3, 1.1, 100000);
+    fit.search = search_moments(
+        fit.parameters, fit.measured,
+        [&](const std::vector<double>& place, int seed) {
+            return known.statistics(0.3, std::exp(place[0] + place[1]), 1 + static_cast<unsigned>(seed));
+        },
+        16);
+    EXPECT_FALSE(fit.fitted()[0].told);
+    EXPECT_FALSE(fit.fitted()[1].told);
+    EXPECT_THAT(remarks_of(fit), Contains(HasSubstr("does not tell a and b apart")));
+    EXPECT_THAT(remarks_of(fit), Not(Contains(HasSubstr("beyond chance, and it"))));
+}
+
 TEST(FitSearch, AModelThatDoesNotDescribeTheStackIsToldAndEnlargesU) {
     const Known known;
     auto measured = known.statistics(0.5, 1.2, 100000);

@@ -171,6 +171,47 @@ TEST(SimulatedMoments, AParameterWithoutEffectIsNotDetermined) {
     EXPECT_NEAR(fit.change[0], 0.05, 4 * std::sqrt(fit.covariance(0, 0)));
 }
 
+// Where no parameter moves anything, or all move the same, nothing is determined; a variance of 0 would be a lie.
+TEST(SimulatedMoments, NothingIsDeterminedWithoutEffectsOrByEqualOnes) {
+    const KnownModel model;
+    const auto measured = model.run(0.05, 0, 900);
+    auto runs = runs_of(model, 24, 1);
+    auto equal = runs;
+    for (std::size_t k = 0; k < 2; ++k) {
+        runs.above[k] = runs.below[k] = runs.centre;
+    }
+    const auto without = fit_moments(runs, measured);
+    equal.above[1] = equal.above[0];
+    equal.below[1] = equal.below[0];
+    const auto by_equal = fit_moments(equal, measured);
+    for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_FALSE(without.determined[k]);
+        EXPECT_FALSE(without.alike[k]);
+        EXPECT_FALSE(by_equal.determined[k]);
+        EXPECT_TRUE(by_equal.alike[k]);
+        EXPECT_EQ(by_equal.change[k], 0);
+    }
+    EXPECT_EQ(without.bound.rows, 0u);
+    EXPECT_TRUE(std::isfinite(without.misfit));
+    EXPECT_FALSE(fit_moments(runs_of(model, 24, 1), measured).alike[0]);
+}
+
+// A parameter that is told a million times better than the other is no reason to take them for alike.
+TEST(SimulatedMoments, ParametersOfVeryDifferentScalesAreBothDetermined) {
+    const KnownModel model;
+    const auto measured = model.run(0.05, 0.02, 900);
+    const auto runs = runs_of(model, 24, 1);
+    auto scaled = runs;
+    scaled.steps[0] *= 1e-4;
+    scaled.widths[0] *= 1e-4;
+    scaled.steps[1] *= 1e4;
+    scaled.widths[1] *= 1e4;
+    const auto fit = fit_moments(runs, measured), of_scaled = fit_moments(scaled, measured);
+    ASSERT_TRUE(of_scaled.determined[0] && of_scaled.determined[1]);
+    EXPECT_NEAR(of_scaled.change[0] * 1e4, fit.change[0], 1e-9);
+    EXPECT_NEAR(of_scaled.change[1] * 1e-4, fit.change[1], 1e-9);
+}
+
 // A wave that no parameter makes, of twice the scatter of a statistic, is a misfit; without it there is none.
 TEST(SimulatedMoments, WhatTheModelDoesNotMakeIsAMisfit) {
     const KnownModel model;

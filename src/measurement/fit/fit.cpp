@@ -149,6 +149,19 @@ void require_request(const FitRequest& request, const Configuration& base) {
     }
 }
 
+// Throws InputError if the configuration refuses the start or the first steps beside it, before hours are spent.
+void require_first_places(const ModelStacks& model, std::size_t parameters) {
+    std::vector<double> place(parameters, 0.0);
+    (void)model.configuration(place, 0);
+    for (double& one : place) {
+        for (const double step : {-moment_search_step, moment_search_step}) {
+            one = step;
+            (void)model.configuration(place, 0);
+        }
+        one = 0;
+    }
+}
+
 // Tells, before the first stack is traced, how many stacks and how much of the disk the fit will take, and refuses it
 // where they do not fit. One stack of images is there at a time.
 void forecast_of(const Configuration& base, const FitRequest& request, const fs::path& folder) {
@@ -244,7 +257,7 @@ FitResult fit(const FitRequest& request, Progress& progress) {
                                                 : of_fit::statistics_of_images(request, found.layout);
     ResultFolder results(base.output_directory);
     ModelStacks model(base, file, request.overrides, found.parameters, found.layout, results, progress);
-    (void)model.configuration(std::vector<double>(found.parameters.size(), 0.0), 0); // checks the starts
+    of_fit::require_first_places(model, found.parameters.size());
     of_fit::forecast_of(base, request, results.path());
     const double images = static_cast<double>(found.positions.size());
     const int most = most_stacks(found.parameters.size(), request.replicates);
@@ -254,11 +267,11 @@ FitResult fit(const FitRequest& request, Progress& progress) {
     bool told = false;
     const auto statistics_at = [&](const std::vector<double>& place, int seed) {
         auto statistics = model.statistics(place, seed);
-        if (!told && model.stacks() == request.replicates) {
+        if (!told && model.stacks() >= request.replicates && model.traced() > 0) { // those kept took no time
             told = true;
             const std::chrono::duration<double> past = std::chrono::steady_clock::now() - begun;
-            spdlog::info("{} stacks took {:.3g} s; the others take at most {:.3g} s", request.replicates, past.count(),
-                         past.count() / request.replicates * (most - request.replicates));
+            spdlog::info("{} stacks took {:.3g} s; the others take at most {:.3g} s", model.traced(), past.count(),
+                         past.count() / model.traced() * (most - model.stacks()));
         }
         return statistics;
     };

@@ -79,8 +79,8 @@ struct FitResult {
 };
 
 // Reads the stack, makes the model's stacks that the output folder lacks, and writes fit.json and fit.html there.
-// Throws InputError before the first stack is traced, also for images that the configuration does not make, and what a
-// stack throws; the same call continues.
+// Throws InputError before the first stack is traced, also for images that the configuration does not make; afterwards
+// only for numbers far from the start that it refuses. Throws what a stack throws; the same call continues.
 FitResult fit(const FitRequest& request, Progress& progress);
 
 // The fit as lines of text, the verdict first.

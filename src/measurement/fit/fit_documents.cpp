@@ -32,9 +32,11 @@ struct Placed {
 };
 
 std::vector<Placed> placed_groups(const StatisticsLayout& layout) {
+    auto groups = statistic_groups(layout);
     std::vector<Placed> placed;
+    placed.reserve(groups.size());
     std::size_t first = 0;
-    for (StatisticGroup& group : statistic_groups(layout)) {
+    for (StatisticGroup& group : groups) {
         const auto count = static_cast<std::size_t>(group.count);
         placed.push_back({std::move(group), first});
         first += count;
@@ -73,17 +75,29 @@ void add_verdict(const Fit& fit, std::vector<std::string>& remarks) {
 }
 
 void add_untold(const Fit& fit, std::vector<std::string>& remarks) {
-    for (const FittedParameter& one : fit.fitted()) {
-        if (!one.determined) {
+    const auto fitted = fit.fitted();
+    const auto& alike = fit.search.fit.alike;
+    std::vector<std::string> keys;
+    keys.reserve(fitted.size());
+    for (std::size_t k = 0; k < fitted.size(); ++k) {
+        const FittedParameter& one = fitted[k];
+        if (alike[k]) {
+            keys.push_back(one.parameter.key);
+        } else if (!one.determined) {
             remarks.push_back(fmt::format("The stack does not tell {}: no statistic follows it beyond chance, and it "
-                                          "was held at {:.4g} or near it.",
-                                          one.parameter.key, one.parameter.start));
+                                          "was held at {:.4g}, where the search left it.",
+                                          one.parameter.key, one.parameter.value(fit.search.place[k])));
         } else if (!one.told && fit.search.settled) {
             remarks.push_back(fmt::format(
                 "The stack does not tell {}: its standard uncertainty is more than a third of what is known beforehand "
                 "({}).",
                 one.parameter.key, one.parameter.known_range()));
         }
+    }
+    if (!keys.empty()) {
+        remarks.push_back(fmt::format("The stack does not tell {} apart: some of them change its statistics in one and "
+                                      "the same way. Free fewer of them.",
+                                      fmt::join(keys, " and ")));
     }
 }
 

@@ -1,6 +1,7 @@
 #include "measurement/fit/model_stacks.hpp"
 
 #include "core/files/digest.hpp"
+#include "core/messages/error.hpp"
 #include "core/messages/heartbeat.hpp"
 #include "core/messages/json_text.hpp"
 #include "measurement/scene/configured_numbers.hpp"
@@ -75,7 +76,20 @@ Configuration ModelStacks::configuration(const std::vector<double>& place, int s
     for (const auto& [key, first] : seeds_) { // the base's own seeds may be those of the measured stack
         overrides.push_back({key, fmt::format("{}", first + 1 + static_cast<std::uint32_t>(seed)), "fit"});
     }
-    return load_configuration(file_, overrides, Needs::stack);
+    const Configuration model = load_configuration(file_, overrides, Needs::stack);
+    const auto images = model.scan->positions().size();
+    const ImageSize pixels = model.instrument.detector_pixels;
+    if (images != static_cast<std::size_t>(layout_.images) || pixels != layout_.pixels) {
+        throw InputError(
+            {.where = {.file = "command line"},
+             .key = "--free",
+             .found = fmt::format("keys that make {} images of {} x {} pixels where the search goes", images,
+                                  pixels.columns, pixels.rows),
+             .expected = fmt::format("keys that leave the {} of {} x {} of the stack", layout_.images,
+                                     layout_.pixels.columns, layout_.pixels.rows),
+             .remedy = "Hold the keys of [scan] and [detector] that decide them, and what they depend on."});
+    }
+    return model;
 }
 
 std::vector<double> ModelStacks::statistics(const std::vector<double>& place, int seed) {
@@ -96,6 +110,7 @@ std::vector<double> ModelStacks::statistics(const std::vector<double>& place, in
         return std::move(kept->statistics);
     }
     ++stacks_;
+    ++traced_;
     names_.insert(name);
     const fs::path folder = results_.path() / "tracing" / name;
     model.output_directory = folder;

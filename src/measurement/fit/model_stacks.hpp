@@ -29,13 +29,14 @@ class ModelStacks {
 
     // The configuration of a stack. Each seed changes all that a repeated measurement of another specimen of this kind
     // would draw anew: rays, noise, errors of the stage, roughness and texture; none is the base's own. Throws
-    // InputError for numbers that the configuration refuses.
+    // InputError for numbers that the configuration refuses, or by which it makes other images than the layout has.
     Configuration configuration(const std::vector<double>& place, int seed) const;
 
     // The statistics of that stack. Throws as configuration() and StackRuns::trace() do.
     std::vector<double> statistics(const std::vector<double>& place, int seed);
 
     int stacks() const { return stacks_; }                            // asked for, of this fit
+    int traced() const { return traced_; }                            // of these, by this run
     const std::set<std::string>& devices() const { return devices_; } // that traced
 
   private:
@@ -49,7 +50,7 @@ class ModelStacks {
     std::map<std::string, std::uint32_t> seeds_; // of the base, by key
     StackRuns runs_;
     std::set<std::string> names_, devices_;
-    int stacks_ = 0;
+    int stacks_ = 0, traced_ = 0;
 };
 
 } // namespace vkfv::measurement

@@ -19,10 +19,11 @@ using Place = std::vector<double>;
 using Runs = std::vector<std::vector<double>>;
 
 constexpr int most_evaluations = 10, most_rounds = 3;
-constexpr double search_step = 0.1; // on the scale of a parameter
-constexpr double furthest = 4;      // on that scale: 2 to 98 % of a range, or a factor of 55
+constexpr double furthest = 4; // on that scale: 2 to 98 % of a range, or a factor of 55
 constexpr double least_step = 0.02, most_step = 0.4;
-constexpr double steps_in_deviations = 5; // neighbours scatter alike, so that u is about 2.5 times that without
+// The steps move all statistics together by so many standard deviations. That would be five standard uncertainties if
+// statistics were independent; since neighbours scatter alike, it is about two.
+constexpr double steps_in_deviations = 5;
 
 int search_seeds(int replicates) {
     return std::max(4, replicates / 4);
@@ -99,10 +100,10 @@ class Distance {
     statistics::Matrix slopes(const Place& place) const {
         statistics::Matrix slopes(measured_.size(), place.size());
         for (std::size_t k = 0; k < place.size(); ++k) {
-            const auto above = difference(mean_of(runs_at(model_, moved(place, k, search_step), 0, seeds_)));
-            const auto below = difference(mean_of(runs_at(model_, moved(place, k, -search_step), 0, seeds_)));
+            const auto above = difference(mean_of(runs_at(model_, moved(place, k, moment_search_step), 0, seeds_)));
+            const auto below = difference(mean_of(runs_at(model_, moved(place, k, -moment_search_step), 0, seeds_)));
             for (std::size_t row = 0; row < above.size(); ++row) {
-                slopes(row, k) = (above[row] - below[row]) / (2 * search_step);
+                slopes(row, k) = (above[row] - below[row]) / (2 * moment_search_step);
             }
         }
         last_slopes_ = slopes;

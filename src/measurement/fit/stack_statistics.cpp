@@ -218,7 +218,9 @@ std::vector<double> StackStatistics::values() const {
         power += image.mean / static_cast<double>(images_.size());
     }
     if (static_cast<int>(images_.size()) != layout_.images || !(power > 0) || !std::isfinite(power)) {
-        throw RunError("the stack has no light, or lacks images: a fit needs all of them, brighter than 0 in the mean");
+        throw RunError(
+            "the stack has no light, lacks images or has pixels without a value: a fit needs all images, "
+            "brighter than 0 in the mean. vkfv verify finds damaged stacks; photographs may need other pages");
     }
     constexpr double least_light = 1e-3; // of the stack's, by which contrasts of dark images are divided
     std::vector<double> values;

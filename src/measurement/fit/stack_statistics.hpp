@@ -37,11 +37,12 @@ std::vector<StatisticGroup> statistic_groups(const StatisticsLayout& layout);
 // and logarithms, so that a change of the light's power changes only the brightness. Groups:
 //   brightness   mean of an image over that of all images
 //   contrast     ln of the pixels' standard deviation over the mean
-//   sharpness_s  ln of the root mean square difference of neighbours along x and y, of pixels binned s x s, over the
-//   mean likeness     Fisher's z of the correlation of an image with the next one curves       of squares of
-//   layout.window pixels: means and scatter of place, width and height of their focus curves
-//                (sharpness over the images), and of their lowest value over the highest
+//   sharpness_s  ln of a root mean square over the mean: the differences of neighbours of pixels binned s x s
+//   likeness     Fisher's z of the correlation of an image with the next one
+//   curves       place, width and height of the focus curves of squares of layout.window pixels, and their depth
 //   power        ln of the mean of all images
+// A focus curve is the sharpness over the images; the group has the mean and the scatter of each number, and of the
+// depth, the lowest value over the highest, the mean.
 class StackStatistics {
   public:
     explicit StackStatistics(const StatisticsLayout& layout);
