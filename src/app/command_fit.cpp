@@ -86,7 +86,7 @@ Command fit_command() {
                  configuration_options(),
                  {out_option("Output folder"), json_option()}}),
             .run = run_fit,
-            .example = "vkfv fit out --free specimen.material.g,specimen.roughness.sq_um"};
+            .example = "vkfv fit demo --free specimen.material.g"};
 }
 
 void run_fit(const CommandOptions& given) {

@@ -282,6 +282,7 @@ case $command in
 check | image) words+=("${few[@]}") ;;
 # With so few rays no height is better than chance.
 stack) words+=(--set scan.z_start_um=-4 --set scan.z_stop_um=4 --set scan.z_step_um=4 --set topography.false_peak_rate=1 "${few[@]}") ;;
+fit) words+=(--replicates 8) ;;
 sweep) words+=(--set specimen.pitch_um=2 "${few[@]}") ;;
 camera) words+=(--pixels 32 --averaged 4) ;;
 layout) [[ ${words[0]} == *layout ]] || words=(layout "${words[1]}" layout.svg "${words[@]:2}" "${few[@]}") ;;
