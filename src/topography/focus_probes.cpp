@@ -630,7 +630,7 @@ std::vector<double> FocusProbes::pattern(const Probe& probe, std::size_t image) 
 bool FocusProbes::reappears(const std::vector<PlaceOfImages>& places) const {
     constexpr std::size_t fewest = 5;
     constexpr double most_errors_by_chance = 3; // standard errors
-    constexpr double least_excess = 0.1;        // blocks of compressed images make noise alike by less
+    constexpr double least_excess = 0.1;        // blocks of compressed noise were alike by 0.08 at most
     if (places.size() < fewest) {
         return true;
     }

@@ -93,8 +93,8 @@ double half_interval(double degrees_of_freedom) {
     return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975);
 }
 
-// Of 200 intervals of 95 %, 190 +- 3.1 hold; 3.5 standard deviations of that are 179 to 200. The truth is not the point
-// of the runs.
+// 200 intervals of 95 % hold 190 +- 3.1 times; the test allows 3.5 of these standard deviations, 179 to 200. The truth
+// is not the point about which the model was run.
 TEST(SimulatedMoments, IntervalsHoldTheParametersAsOftenAsTheySay) {
     constexpr int draws = 200;
     constexpr std::size_t seeds = 24;

@@ -61,8 +61,8 @@ std::string with_unit(const std::string& text, const std::string& unit) {
 void add_verdict(const Fit& fit, std::vector<std::string>& remarks) {
     const auto& found = fit.search.fit;
     const std::string misfit = fmt::format(
-        "what the fit leaves of the statistics has {:.3g} times the mean square that stacks of the model have (chi "
-        "squared per degree of freedom), which chance makes as large in {:.2g} % of cases",
+        "what the fit leaves of the statistics has {:.3g} times the mean square that stacks of the model have, which "
+        "chance makes as large in {:.2g} % of cases",
         found.misfit, percent * found.misfit_probability);
     if (fit.describes()) {
         remarks.push_back(fmt::format("The model describes the stack: {}.", misfit));

@@ -110,7 +110,7 @@ class Distance {
         return slopes;
     }
 
-    // Of the last call of slopes().
+    // The result of the last call of slopes(), which the algorithm does not give back.
     const statistics::Matrix& last_slopes() const { return last_slopes_; }
 
   private:

@@ -10,7 +10,7 @@
 
 namespace vkfv::measurement {
 
-// What decides which statistics a stack has.
+// The properties of a stack and of its evaluation that decide which statistics there are.
 struct StatisticsLayout {
     int images = 0;
     ImageSize pixels{};
