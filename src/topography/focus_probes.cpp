@@ -91,28 +91,41 @@ double neighbours_alike(const std::vector<double>& values) {
     return variance > 0 ? std::max(0.0, 1 - steps / (2 * variance)) : 0;
 }
 
+// The correlation of a patch with another that is shifted by (dx, dy) pixels, where both overlap.
+double correlation_at(const std::vector<double>& a, const std::vector<double>& b, int columns, int rows, int dx,
+                      int dy) {
+    double product = 0, square_a = 0, square_b = 0;
+    for (int row = std::max(0, -dy); row < std::min(rows, rows - dy); ++row) {
+        for (int column = std::max(0, -dx); column < std::min(columns, columns - dx); ++column) {
+            const double of_a = a[static_cast<std::size_t>(row * columns + column)];
+            const double of_b = b[static_cast<std::size_t>((row + dy) * columns + column + dx)];
+            product += of_a * of_b;
+            square_a += of_a * of_a;
+            square_b += of_b * of_b;
+        }
+    }
+    return square_a > 0 && square_b > 0 ? product / std::sqrt(square_a * square_b) : 0;
+}
+
 // The largest correlation of two patches over shifts of up to a third of their sides.
 double largest_correlation(const std::vector<double>& a, const std::vector<double>& b, int columns, int rows) {
     const int most_x = columns / 3, most_y = rows / 3;
     double largest = 0;
     for (int dy = -most_y; dy <= most_y; ++dy) {
         for (int dx = -most_x; dx <= most_x; ++dx) {
-            double product = 0, square_a = 0, square_b = 0;
-            for (int row = std::max(0, -dy); row < std::min(rows, rows - dy); ++row) {
-                for (int column = std::max(0, -dx); column < std::min(columns, columns - dx); ++column) {
-                    const double of_a = a[static_cast<std::size_t>(row * columns + column)];
-                    const double of_b = b[static_cast<std::size_t>((row + dy) * columns + column + dx)];
-                    product += of_a * of_b;
-                    square_a += of_a * of_a;
-                    square_b += of_b * of_b;
-                }
-            }
-            if (square_a > 0 && square_b > 0) {
-                largest = std::max(largest, product / std::sqrt(square_a * square_b));
-            }
+            largest = std::max(largest, correlation_at(a, b, columns, rows, dx, dy));
         }
     }
     return largest;
+}
+
+// True if the mean of the values exceeds 0 by more than chance: by three standard errors, and by a tenth, since blocks
+// of compressed noise were found alike by 0.08.
+bool exceeds_chance(const std::vector<double>& values) {
+    constexpr double least = 0.1, errors = 3;
+    const auto count = static_cast<double>(values.size());
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+    return mean > std::max(least, errors * std::sqrt(variance_of(values) / count));
 }
 
 // Adds values(p) values(p + k) for every k = (column - reach, row) of sums, over the pixels p of a patch.
@@ -610,51 +623,68 @@ double FocusProbes::measure_of_rounding(double brightness) const {
     return focus_at(patch, measure_, window_, probes_.front().middle_column, probes_.front().middle_row);
 }
 
-std::vector<double> FocusProbes::pattern(const Probe& probe, std::size_t image) const {
-    const std::size_t pixels = probe.pixels(), values = pixels * static_cast<std::size_t>(channels_);
-    std::vector<double> result(pixels);
-    for (std::size_t k = 0; k < values; ++k) {
-        double mean = 0;
-        for (int other = 0; other < images_; ++other) {
-            mean += static_cast<double>(probe.values[static_cast<std::size_t>(other) * values + k]) / images_;
-        }
-        result[k % pixels] += static_cast<double>(probe.values[image * values + k]) - mean;
-    }
-    const double level = std::accumulate(result.begin(), result.end(), 0.0) / static_cast<double>(pixels);
-    for (double& value : result) {
-        value -= level;
-    }
-    return result;
-}
-
 bool FocusProbes::reappears(const std::vector<PlaceOfImages>& places) const {
     constexpr std::size_t fewest = 5;
-    constexpr double most_errors_by_chance = 3; // standard errors
-    constexpr double least_excess = 0.1;        // blocks of compressed noise were alike by 0.08 at most
     if (places.size() < fewest) {
         return true;
     }
-    std::vector<double> excess(places.size(), 0.0);
+    std::vector<double> at_its_place(places.size(), 0.0), anywhere(places.size(), 0.0); // excess over another place
     parallel_items(static_cast<int>(places.size()), [&](int k) {
-        const PlaceOfImages& here = places[static_cast<std::size_t>(k)];
-        const PlaceOfImages& other = places[(static_cast<std::size_t>(k) + 1) % places.size()];
-        if (other.probe->columns != here.probe->columns || other.probe->rows != here.probe->rows) {
+        const auto place = static_cast<std::size_t>(k);
+        const PlaceOfImages& here = places[place];
+        const PlaceOfImages& other = places[(place + 1) % places.size()];
+        const int columns = here.probe->columns, rows = here.probe->rows;
+        if (other.probe->columns != columns || other.probe->rows != rows) {
             return;
         }
-        const auto image = pattern(*here.probe, here.image);
-        const auto correlation = [&](const PlaceOfImages& place) {
-            return largest_correlation(image, pattern(*place.probe, place.neighbour), here.probe->columns,
-                                       here.probe->rows);
-        };
-        excess[static_cast<std::size_t>(k)] = correlation(here) - correlation(other);
+        const auto all = patterns(*here.probe);
+        const auto& image = all[here.image];
+        const auto& neighbour = all[here.neighbour];
+        const auto of_other = patterns(*other.probe)[other.neighbour];
+        at_its_place[place] = correlation_at(image, neighbour, columns, rows, 0, 0) -
+                              correlation_at(image, of_other, columns, rows, 0, 0);
+        anywhere[place] =
+            largest_correlation(image, neighbour, columns, rows) - largest_correlation(image, of_other, columns, rows);
     });
-    const auto count = static_cast<double>(excess.size());
-    const double mean = std::accumulate(excess.begin(), excess.end(), 0.0) / count;
-    return mean > std::max(least_excess, most_errors_by_chance * std::sqrt(variance_of(excess) / count));
+    return exceeds_chance(at_its_place) || exceeds_chance(anywhere);
 }
 
-std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
-                                                                 bool curves_averaged) const {
+bool FocusProbes::lie_on_a_surface(const std::vector<PlaceOfImages>& places) {
+    constexpr std::size_t fewest_pairs = 16;
+    constexpr double errors_of_chance = 3;
+    std::vector<double> images(places.size());
+    std::ranges::transform(places, images.begin(),
+                           [](const PlaceOfImages& place) { return static_cast<double>(place.image); });
+    const double variance = variance_of(images);
+    // Half of the mean squared step between independent values is their variance, with a relative standard deviation of
+    // 1 / sqrt(pairs) (J. von Neumann, "Distribution of the ratio of the mean square successive difference to the
+    // variance", 1941).
+    const auto follow_each_other = [&](auto along, auto across, auto extent) {
+        double squares = 0, pairs = 0;
+        for (const PlaceOfImages& place : places) {
+            const PlaceOfImages* beside = nullptr;
+            for (const PlaceOfImages& other : places) {
+                if (across(*other.probe) == across(*place.probe) &&
+                    along(*other.probe) >= along(*place.probe) + extent(*place.probe) &&
+                    (beside == nullptr || along(*other.probe) < along(*beside->probe))) {
+                    beside = &other;
+                }
+            }
+            if (beside != nullptr) {
+                squares += std::pow(static_cast<double>(beside->image) - static_cast<double>(place.image), 2);
+                ++pairs;
+            }
+        }
+        return pairs >= fewest_pairs && squares < 2 * pairs * (1 - errors_of_chance / std::sqrt(pairs)) * variance;
+    };
+    const auto column = [](const Probe& probe) { return probe.column; };
+    const auto row = [](const Probe& probe) { return probe.row; };
+    return follow_each_other(column, row, [](const Probe& probe) { return probe.columns; }) ||
+           follow_each_other(row, column, [](const Probe& probe) { return probe.rows; });
+}
+
+std::optional<StrongTexture> FocusProbes::persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
+                                                                        bool curves_averaged) const {
     constexpr double least_rise = 8; // rise of the measure along z, over its quiet value
     constexpr double persistent = 0.25;
     constexpr double least_share = 0.02;
@@ -671,7 +701,7 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
     if (!curves_averaged) {
         means.curve = all_shares(axial_shares, {1}, images_);
     }
-    std::vector<double> shares(probes_.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<double> shares(probes_.size(), std::numeric_limits<double>::quiet_NaN()), correlations = shares;
     std::vector<std::optional<PlaceOfImages>> passing(probes_.size()); // where strong texture does not persist
     parallel_items(static_cast<int>(probes_.size()), [&](int k) {
         const Probe& probe = probes_[static_cast<std::size_t>(k)];
@@ -682,14 +712,17 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
             return;
         }
         const double joint = curve(probe, images_in_order(images_), means)[at];
-        double alone = 0, kept = 0;
+        double alike = 0, independent = 0, kept = 0; // alike: the focus measure of the mean if all have one pattern
         for (const auto& [image, weight] : means.images[at]) {
             const double share = static_cast<double>(weight) * static_cast<double>(weight);
             const double single = singles[static_cast<std::size_t>(image)];
             kept += share;
-            alone += share * single * single;
+            alike += static_cast<double>(weight) * single;
+            independent += share * single * single;
         }
-        shares[static_cast<std::size_t>(k)] = (joint * joint / alone - 1) / (1 / kept - 1);
+        const double beyond_independent = joint * joint - independent;
+        shares[static_cast<std::size_t>(k)] = beyond_independent / (independent * (1 / kept - 1));
+        correlations[static_cast<std::size_t>(k)] = beyond_independent / (alike * alike - independent);
         const std::size_t neighbour = singles[at - 1] > singles[at + 1] ? at - 1 : at + 1;
         if (shares[static_cast<std::size_t>(k)] < persistent) {
             passing[static_cast<std::size_t>(k)] = {&probe, at, neighbour};
@@ -701,18 +734,26 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
             not_persistent.push_back(*place);
         }
     }
-    if (!reappears(not_persistent)) { // a pattern that does not reappear is noise, whose strength is no evidence
+    // A pattern that neither reappears nor shows a surface is noise, whose strength is no evidence.
+    if (!reappears(not_persistent) && !lie_on_a_surface(not_persistent)) {
         for (std::size_t k = 0; k < shares.size(); ++k) {
-            shares[k] = passing[k] ? std::numeric_limits<double>::quiet_NaN() : shares[k];
+            if (passing[k]) {
+                shares[k] = correlations[k] = std::numeric_limits<double>::quiet_NaN();
+            }
         }
     }
-    std::erase_if(shares, [](double share) { return std::isnan(share); });
-    if (static_cast<double>(shares.size()) < std::max(5.0, least_share * static_cast<double>(probes_.size()))) {
+    const auto told =
+        static_cast<double>(std::ranges::count_if(shares, [](double share) { return !std::isnan(share); }));
+    if (told < std::max(5.0, least_share * static_cast<double>(probes_.size()))) {
         return std::nullopt;
     }
-    const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-    std::ranges::nth_element(shares, middle);
-    return *middle;
+    const auto median = [](std::vector<double>& values) {
+        std::erase_if(values, [](double value) { return std::isnan(value); });
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::ranges::nth_element(values, middle);
+        return *middle;
+    };
+    return StrongTexture{.share = median(shares), .correlation = median(correlations)};
 }
 
 std::vector<std::vector<double>> FocusProbes::patterns(const Probe& probe) const {

@@ -91,13 +91,13 @@ class FocusProbes {
     // or no noise.
     IndependentImages independent_images(const std::vector<double>& neighbour_weights, bool curves_averaged) const;
 
-    // The share of strong texture that persists from image to image (persistence.hpp): 0 if every image has another
-    // pattern, 1 if the pattern stays. Texture is strong where the focus measure rises to eight times its quiet value
-    // and that of rounding to grey values. The result is the median over the probes with strong texture; it is empty if
-    // hardly any has. The share is small if the images move, or if texture is in focus in one image alone. A pattern
-    // that is not found in the neighbouring image at any place nearby is noise and does not count.
-    std::optional<double> persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
-                                                        bool curves_averaged) const;
+    // How far strong texture persists from image to image (persistence.hpp). Texture is strong where the focus measure
+    // rises to eight times its quiet value and that of rounding to grey values. The result is empty if hardly any probe
+    // has strong texture. The share is small if the images move, or if texture is in focus in one image alone. A
+    // pattern that is not found in the neighbouring image at any place nearby is noise and does not count, unless such
+    // places show a surface that is not level.
+    std::optional<StrongTexture> persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
+                                                               bool curves_averaged) const;
 
     // The energy (the square of the focus measure of an image) below which what the probes show is no evidence of
     // texture: twice the largest at which a fifth or more of the patterns of neighbouring images do not agree, and at
@@ -158,14 +158,17 @@ class FocusProbes {
         const Probe* probe;
         std::size_t image, neighbour;
     };
-    // A probe's image minus the mean of all of its images, channels added up; the mean is 0.
-    std::vector<double> pattern(const Probe& probe, std::size_t image) const;
     // The patterns of all images less the mean of those with the least focus, a third of all.
     std::vector<std::vector<double>> patterns(const Probe& probe) const;
-    // True if the patterns of images are found in their neighbours too, wherever they have moved: if their largest
-    // correlations exceed those with other places' neighbours by more than chance and by a tenth. True also if places
-    // are few.
+    // True if the patterns of images are found in their neighbours too, at the same place or wherever they have moved:
+    // if one of these correlations exceeds that with other places' neighbours by more than chance. Texture that is
+    // sharp in one image alone is seen at its own place, since its blurred neighbour is like many places by some shift.
+    // True also if places are few.
     bool reappears(const std::vector<PlaceOfImages>& places) const;
+    // True if the images of the largest focus measure follow each other along rows or columns of places whose patches
+    // do not overlap: texture on a surface that is not level is sharp in an image of its own, whereas all places see
+    // the same noise.
+    static bool lie_on_a_surface(const std::vector<PlaceOfImages>& places);
 
     // Second differences along z of a channel, evaluated.
     struct Differences {

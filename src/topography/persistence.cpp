@@ -31,7 +31,8 @@ double chi_square_exceeded_as(double normal, double degrees) {
 } // namespace
 
 PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const std::vector<double>& neighbour_weights,
-                                   int images, double rate, std::optional<double> strong_texture, double least_energy)
+                                   bool curves_averaged, int images, double rate, std::optional<double> strong_texture,
+                                   double least_energy)
     : independent_(independent), strong_texture_(strong_texture), least_energy_(least_energy) {
     for (int at = 0; at < images; ++at) {
         const auto shares = axial_shares(neighbour_weights, at, images);
@@ -40,6 +41,11 @@ PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const s
         }));
     }
     mean_kept_ = std::accumulate(kept_.begin(), kept_.end(), 0.0) / images;
+    if (!curves_averaged && neighbour_weights.size() == 2) {
+        const double sum = neighbour_weights[0] + 2 * neighbour_weights[1];
+        weight_ = neighbour_weights[0] / sum;
+        weight_beside_ = neighbour_weights[1] / sum;
+    }
     // The largest value of the curve is chosen among as many places as there are means that share few images.
     const double places = std::max(1.0, images * kept_[kept_.size() / 2]);
     normal_ = normal_exceeded_with(rate / places);
@@ -68,34 +74,52 @@ double PersistenceLimit::least_ratio() const {
     return !kept_.empty() && tells() ? independent_.mean + beyond_chance(1) : 0;
 }
 
+double PersistenceLimit::scale_of_chance(const focus::f64::CurveRecord& curve, double independent) const {
+    if (weight_ == 0 || curve.at == 0 || curve.at + 1 == static_cast<int>(kept_.size())) {
+        return independent;
+    }
+    // The neighbours' measures, by their sum and, since f E is a sum of squares, by that of their squares.
+    const double sum = 2 * curve.largest - curve.bend, largest = weight_ * curve.largest;
+    const double beside = weight_beside_ * weight_beside_;
+    const double squares = std::max((independent - largest * largest) / beside, 0.5 * sum * sum);
+    const double product = std::max(0.0, 0.5 * (sum * sum - squares));
+    return std::min(independent, 2 * std::sqrt(largest * largest * beside * squares + std::pow(beside * product, 2)));
+}
+
+double PersistenceLimit::all_alike(const focus::f64::CurveRecord& curve) const {
+    if (weight_ == 0 || curve.at == 0 || curve.at + 1 == static_cast<int>(kept_.size())) {
+        return curve.alone;
+    }
+    const double mean = weight_ * curve.largest + weight_beside_ * (2 * curve.largest - curve.bend);
+    return mean * mean;
+}
+
 bool PersistenceLimit::exceeded_by(const focus::f64::CurveRecord& curve, double window_share) const {
     if (kept_.empty()) {
         return true;
     }
+    const double kept = kept_[static_cast<std::size_t>(curve.at)];
+    const double joint = curve.joint * curve.joint, alone = curve.alone, independent = kept * alone;
     if (!tells()) {
-        constexpr double persistent = 0.25;
-        const double kept = kept_[static_cast<std::size_t>(curve.at)], independent = kept * curve.alone;
-        const double all_alike = curve.alone;
-        return curve.alone >= least_energy_ &&
-               curve.joint * curve.joint - independent >= persistent * (all_alike - independent);
+        constexpr double persistent = 0.25, alike = 0.5;
+        return alone >= least_energy_ && (joint - independent >= persistent * (alone - independent) ||
+                                          joint - independent >= alike * (all_alike(curve) - independent));
     }
     const double images = static_cast<double>(kept_.size());
     const double mean = independent_.mean, beyond = beyond_chance(window_share);
-    const double kept = kept_[static_cast<std::size_t>(curve.at)];
-    const auto persisting = [mean](double joint, double alone, double share) {
-        return (joint - mean * share * alone) / (1 - mean * share);
-    };
-    const double joint = curve.joint * curve.joint, alone = curve.alone;
-    const double here = persisting(joint, alone, kept);
+    const double chance = scale_of_chance(curve, independent);
+    const double beyond_independent = joint - independent - (mean - 1) * chance; // its mean is 0 for noise
+    const double here = beyond_independent / (1 - mean * kept);
     const double passing = std::max(0.0, alone - here);
-    const bool by_chance = joint <= (mean + beyond) * kept * alone && here <= passing;
+    const bool by_chance = beyond_independent <= beyond * chance && here <= passing;
     if (by_chance || !(here > 0)) {
         return false;
     }
-    const double everywhere = persisting(curve.joint_squares / images, curve.alone_sum / images, mean_kept_);
+    const double everywhere =
+        (curve.joint_squares / images - mean * mean_kept_ * curve.alone_sum / images) / (1 - mean * mean_kept_);
     // If the same pattern persisted everywhere, this is the deviation of noise of energy N and of its product with the
     // pattern.
-    const double noise = kept * passing;
+    const double noise = std::min(kept * passing, chance);
     return here - everywhere > beyond * std::sqrt(noise * noise + 2 * std::max(0.0, everywhere) * noise);
 }
 

@@ -360,10 +360,11 @@ StackFigures StackEvaluator::judge_stack() const {
         // If even strong texture does not persist, persistence is no evidence for a point.
         constexpr double least_persistence = 0.25;
         const auto of_strong = probes_->persistence_of_strong_texture(neighbour_weights_, averaged);
-        if (of_strong.value_or(1) >= least_persistence) {
+        if (!of_strong || of_strong->share >= least_persistence) {
             const auto limit_by = [&](const IndependentImages& independent, double least_energy) {
-                return PersistenceLimit(independent, neighbour_weights_, images,
-                                        share_of_rate * options_.false_peak_rate, of_strong, least_energy);
+                return PersistenceLimit(independent, neighbour_weights_, averaged, images,
+                                        share_of_rate * options_.false_peak_rate,
+                                        of_strong ? std::optional(of_strong->correlation) : std::nullopt, least_energy);
             };
             const auto independent = probes_->independent_images(neighbour_weights_, averaged);
             figures.persistence = limit_by(independent, 0);

@@ -63,6 +63,30 @@ TEST(FewImages, InRandomOrderAreNotMeasured) {
     }
 }
 
+// Steps of the scan may be as coarse as the depth of field or coarser: texture is sharp in one image alone then, and
+// differs from noise by its blurred neighbours or, where nothing is left in these, by the surface that it lies on.
+TEST(FewImages, WithTextureSharpInOneImageAloneAreMeasured) {
+    struct Case {
+        double blur;  // pixels a step
+        double least; // share of the points
+    };
+    for (const Case& one : {Case{0.7, 0.98}, {1, 0.98}, {1.5, 0.98}, {2, 0.98}, {3, 0.9}, {4, 0.75}}) {
+        SCOPED_TRACE(testing::Message() << "blur of " << one.blur << " pixels a step");
+        const ModelStack stack = test::blurred_slope(9, 2, 6, one.blur, 0.005, 5);
+        const Topography topography = reconstruct(stack.images, stack.z, 0, 0, 1, {});
+        double sum = 0;
+        int measured = 0;
+        for (std::size_t k = 0; k < stack.height.values.size(); ++k) {
+            if (topography.state.values[k] == PointState::measured) {
+                sum += std::pow(topography.height.height.values[k] - stack.height.values[k], 2);
+                ++measured;
+            }
+        }
+        EXPECT_GE(measured, one.least * side * side);
+        EXPECT_LE(std::sqrt(sum / measured), 0.3);
+    }
+}
+
 TEST(FewImages, TellWhatPassesByChance) {
     // A share of 0.03 to 0.1 of stacks of seven values in random order is unimodal, depending on their form.
     const ModelStack stack = model_stack(7, 1, false, 4);

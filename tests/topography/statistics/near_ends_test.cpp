@@ -1,6 +1,7 @@
 // Specimens in focus near an end of the scan are measured without bias: their texture is blurred by Gaussians that
 // widen with the distance from focus.
 #include "topography/focus_probes.hpp"
+#include "topography/model_stack.hpp"
 #include "topography/topography.hpp"
 
 #include <gtest/gtest.h>
@@ -14,34 +15,8 @@
 namespace vkfv::topography {
 namespace {
 
-constexpr int side = 72;
-
-Grid<double> blurred(const Grid<double>& image, double sigma) {
-    const int radius = static_cast<int>(std::ceil(3 * sigma));
-    std::vector<double> weights;
-    for (int d = -radius; d <= radius; ++d) {
-        weights.push_back(std::exp(-0.5 * d * d / (sigma * sigma)));
-    }
-    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-    Grid<double> along_x(side, side), both(side, side);
-    for (int row = 0; row < side; ++row) {
-        for (int column = 0; column < side; ++column) {
-            for (int d = -radius; d <= radius; ++d) {
-                along_x(column, row) +=
-                    weights[static_cast<std::size_t>(d + radius)] / total * image((column + d + side) % side, row);
-            }
-        }
-    }
-    for (int row = 0; row < side; ++row) {
-        for (int column = 0; column < side; ++column) {
-            for (int d = -radius; d <= radius; ++d) {
-                both(column, row) +=
-                    weights[static_cast<std::size_t>(d + radius)] / total * along_x(column, (row + d + side) % side);
-            }
-        }
-    }
-    return both;
-}
+using test::blurred;
+using test::side;
 
 // A flat specimen at `place` in steps of the scan, blurred by `blur` pixels a step.
 std::vector<Grid<float>> flat_at(double place, double blur, unsigned seed, int images = 41) {

@@ -215,7 +215,7 @@ TEST(Persistence, TheLimitIsExceededAtItsRate) {
     const auto weights = axial_weights(2.0);
     constexpr double rate = 0.05;
     const IndependentImages independent{.mean = 1, .deviation = std::sqrt(2.0 / degrees), .largest = 1};
-    const PersistenceLimit limit(independent, weights, images, rate);
+    const PersistenceLimit limit(independent, weights, true, images, rate);
     double kept = 0;
     for (const Share& share : axial_shares(weights, images / 2, images)) {
         kept += static_cast<double>(share.weight) * static_cast<double>(share.weight);
@@ -238,10 +238,10 @@ TEST(Persistence, TheLimitIsExceededAtItsRate) {
 }
 
 TEST(Persistence, TellsTextureHoweverMuchOfTheScanItFills) {
-    const PersistenceLimit limit({.mean = 1, .deviation = 0.3, .largest = 1.8}, {1, 0.5}, 9, 0.003);
+    const PersistenceLimit limit({.mean = 1, .deviation = 0.3, .largest = 1.8}, {1, 0.5}, false, 9, 0.003);
     focus::f64::CurveRecord curve = focus::f64::empty_curve();
     curve.at = 4;
-    curve.alone = curve.joint = 1;
+    curve.largest = curve.alone = curve.joint = 1;
     curve.alone_sum = curve.joint_squares = 9 * 0.9; // a curve far wider than the scan, without noise
     EXPECT_TRUE(limit.exceeded_by(curve, 1));
     curve.joint = std::sqrt(0.375); // noise alone, on a third of the mean
