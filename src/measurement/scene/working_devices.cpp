@@ -1,5 +1,6 @@
 #include "measurement/scene/working_devices.hpp"
 
+#include "fields/interferometer.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/wave_devices.hpp"
 #include "scan/staged_tracer.hpp"
@@ -76,9 +77,35 @@ std::unique_ptr<trace::Tracer> WorkingDevices::make_tracer(const optics::Instrum
     return tracer;
 }
 
+namespace {
+
+// The interferometer, for all heights at which its stage may stand.
+std::unique_ptr<trace::Tracer> make_interferometer(const Configuration& configuration,
+                                                   const optics::Instrument& instrument,
+                                                   const specimen::Specimen& specimen,
+                                                   const std::optional<scan::StageMotion>& motion) {
+    const auto positions = configuration.scan ? configuration.scan->positions() : std::vector{0.0};
+    const double aside = motion ? motion->farthest(positions) : 0;
+    const auto [lowest, highest] = std::ranges::minmax(positions);
+    std::unique_ptr<trace::Tracer> tracer;
+    at_its_place(configuration, {.file = configuration.file}, [&] {
+        tracer = fields::make_host_interferometer(instrument, configuration.instrument, specimen,
+                                                  configuration.reference_arm.value(),
+                                                  {.lowest = lowest - aside, .highest = highest + aside});
+    });
+    return tracer;
+}
+
+} // namespace
+
 std::unique_ptr<trace::Tracer> make_tracer(const WorkingDevices& devices, const Configuration& configuration,
                                            const optics::Instrument& instrument, const specimen::Specimen& specimen) {
     auto motion = stage_motion(configuration);
+    if (configuration.reference_arm) {
+        auto tracer = make_interferometer(configuration, instrument, specimen, motion);
+        spdlog::info("{}", tracer->description());
+        return motion ? scan::make_staged_tracer(std::move(tracer), std::move(*motion)) : std::move(tracer);
+    }
     if (!motion) {
         return devices.make_tracer(instrument, specimen, configuration.trace);
     }
