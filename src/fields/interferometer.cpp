@@ -76,6 +76,11 @@ void bin(const Grid<Value>& values, const FieldGrid& grid, Grid<Result>& pixels)
     });
 }
 
+// The transform of a cell at a frequency in cycles per point, by which the mean over cells weakens a wave.
+double of_cell(double frequency) {
+    return frequency == 0 ? 1 : std::sin(pi * frequency) / (pi * frequency);
+}
+
 double disc_overlap(double first, double second, double apart) { // area
     if (first <= 0 || second <= 0 || apart >= first + second) {
         return 0;
@@ -96,16 +101,11 @@ Grid<double> object_image(const SampledSurface& surface, double aperture, double
     const FieldGrid& grid = surface.grid;
     Grid<std::complex<double>> image(grid.columns, grid.rows);
     const double whole = disc_overlap(aperture, lit, 0);
-    const auto& h = surface.heights;
     parallel_rows(grid.columns, grid.rows, [&](int first, int end) {
         for (int row = first; row < end; ++row) {
             for (int column = 0; column < grid.columns; ++column) {
-                const auto slope = [&](int dx, int dy) {
-                    const int right = std::min(column + dx, grid.columns - 1), left = std::max(column - dx, 0);
-                    const int up = std::min(row + dy, grid.rows - 1), down = std::max(row - dy, 0);
-                    return (h(right, up) - h(left, down)) / (grid.pitch * (right - left + up - down));
-                };
-                const double x = slope(1, 0), y = slope(0, 1), square = x * x + y * y;
+                const glm::dvec2 slope = surface.slopes(column, row);
+                const double square = glm::dot(slope, slope);
                 const double turned = 2 * std::sqrt(square) / (1 + square); // sine of twice the slope's angle
                 image(column, row) = surface.amplitude(column, row) * surface.amplitude(column, row) *
                                      disc_overlap(aperture, lit, turned) / whole;
@@ -249,18 +249,14 @@ FringeFields fringe_fields(const optics::Instrument& instrument, const optics::I
     for (int node = 0; node < transfer.nodes(); ++node) {
         const double q = transfer.wave_number(node);
         fields.wave_numbers.push_back(q);
-        parallel_rows(grid.columns, grid.rows, [&](int first, int end) {
-            for (std::size_t k = waves.index(0, first); k < waves.index(0, end); ++k) {
-                waves.values[k] = std::polar(surface.amplitude.values[k], -q * (surface.heights.values[k] - middle_height));
-            }
-        });
+        reflect(surface, q, middle_height, waves);
         fourier_transform(waves);
         parallel_rows(grid.columns, grid.rows, [&](int first, int end) {
             for (int row = first; row < end; ++row) {
                 for (int column = 0; column < grid.columns; ++column) {
-                    const double f = std::hypot(fourier_frequency(column, grid.columns),
-                                                fourier_frequency(row, grid.rows)) / grid.pitch;
-                    waves(column, row) *= transfer.at(node, f);
+                    const double x = fourier_frequency(column, grid.columns), y = fourier_frequency(row, grid.rows);
+                    const std::complex<double> of_frequency = transfer.at(node, std::hypot(x, y) / grid.pitch);
+                    waves(column, row) *= of_frequency == 0.0 ? 0.0 : of_frequency / (of_cell(x) * of_cell(y));
                 }
             }
         });

@@ -3,6 +3,7 @@
 #include "core/mathematics/line_transform.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "specimen/description.hpp"
 
 #include <fmt/format.h>
@@ -37,6 +38,59 @@ double reflectance_of(const specimen::Specimen& specimen, double wavelength_um) 
     }
     const auto& lobe = lobes.front();
     return lobe.weight * (lobe.reflectance.values.empty() ? 1 : lobe.reflectance.at(wavelength_um));
+}
+
+// Of two slopes to either side the gentler one, or 0 on a ridge: an edge beside a point does not count as its slope.
+double gentler(double before, double after) {
+    return before * after <= 0 ? 0 : std::abs(before) < std::abs(after) ? before : after;
+}
+
+Grid<glm::dvec2> slopes_of(const SampledSurface& surface) {
+    const FieldGrid& grid = surface.grid;
+    const auto& h = surface.heights;
+    Grid<glm::dvec2> slopes(grid.columns, grid.rows, glm::dvec2(0));
+    for (int row = 1; row + 1 < grid.rows; ++row) {
+        for (int column = 1; column + 1 < grid.columns; ++column) {
+            const double here = h(column, row);
+            slopes(column, row) = glm::dvec2(gentler(here - h(column - 1, row), h(column + 1, row) - here),
+                                             gentler(here - h(column, row - 1), h(column, row + 1) - here)) /
+                                  grid.pitch;
+        }
+    }
+    return slopes;
+}
+
+// A cell holds an edge where its mean height is not that of its middle.
+template <class Place>
+void find_edges(const specimen::Specimen& specimen, const PixelGrid& points, const Place& place, double wavelength,
+                SampledSurface& surface) {
+    constexpr double flat = 1.0 / 200; // of the wavelength: a phase of 0.06
+    constexpr int side = 8;
+    const auto means = specimen::truth(specimen, points.columns, points.rows, points.x0, points.y0, points.pitch_x,
+                                       points.pitch_y).height;
+    for (std::size_t k = 0; k < means.values.size(); ++k) {
+        if (std::abs(means.values[k] - surface.heights.values[k]) > flat * wavelength) {
+            surface.edges.push_back(k);
+        }
+    }
+    if (surface.edges.empty()) {
+        return;
+    }
+    const PixelGrid list{.columns = SampledSurface::parts_of_edge, .rows = static_cast<int>(surface.edges.size()),
+                         .x0 = 0, .y0 = 0, .pitch_x = 1, .pitch_y = 1};
+    surface.edge_heights =
+        specimen::truth(specimen, list, [&](int part, int edge) {
+            const auto at = static_cast<int>(surface.edges[static_cast<std::size_t>(edge)]);
+            const glm::dvec2 within((part % side + 0.5) / side - 0.5, (part / side + 0.5) / side - 0.5);
+            return specimen::PixelArea{.middle = place(at % points.columns, at / points.columns) +
+                                                 points.pitch_x * within};
+        }).height.values;
+    std::ranges::replace_if(
+        surface.edge_heights, [](double height) { return !std::isfinite(height); }, 0.0);
+}
+
+double sinc(double x) { // sin(x) / x
+    return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x;
 }
 
 [[noreturn]] void refuse(const char* what, double share, const std::string& limit, const std::string& remedy) {
@@ -85,9 +139,11 @@ SampledSurface sample_surface(const specimen::Specimen& specimen, const optics::
                            .y0 = y0,
                            .pitch_x = grid.pitch,
                            .pitch_y = grid.pitch};
+    const auto place = [&](int column, int row) { return glm::dvec2(x0 + column * grid.pitch, y0 + row * grid.pitch); };
     surface.heights = specimen::truth(specimen, points, [&](int column, int row) { // of points, not areas
-                          return specimen::PixelArea{.middle = {x0 + column * grid.pitch, y0 + row * grid.pitch}};
+                          return specimen::PixelArea{.middle = place(column, row)};
                       }).height;
+    find_edges(specimen, points, place, wavelength_um * mm_per_um, surface);
     surface.amplitude = Grid<double>(grid.columns, grid.rows, amplitude);
     surface.lowest = 1e300;
     surface.highest = -1e300;
@@ -108,6 +164,7 @@ SampledSurface sample_surface(const specimen::Specimen& specimen, const optics::
                           .expected = "a specimen in the field",
                           .remedy = "Make it larger, or move it."});
     }
+    surface.slopes = slopes_of(surface);
     const double wavelength = wavelength_um * mm_per_um;
     const double most_step = wavelength / 4;                                      // 2 k times it is pi
     const double most_bend = grid.pitch * grid.pitch / wavelength;                // second difference of that radius
@@ -147,6 +204,28 @@ SampledSurface sample_surface(const specimen::Specimen& specimen, const optics::
         refuse("shadow", surface.shadowed, "shadow", "Take a gentler surface, or a smaller aperture.");
     }
     return surface;
+}
+
+void reflect(const SampledSurface& surface, double wave_number, double zero, Grid<std::complex<double>>& wave) {
+    parallel_rows(wave.columns, wave.rows, [&](int first, int end) {
+        for (std::size_t k = wave.index(0, first); k < wave.index(0, end); ++k) {
+            // The mean over a plane cell.
+            const glm::dvec2 turn = surface.slopes.values[k] * (wave_number * surface.grid.pitch / 2);
+            wave.values[k] = std::polar(1.0, -wave_number * (surface.heights.values[k] - zero)) *
+                             (surface.amplitude.values[k] * sinc(turn.x) * sinc(turn.y));
+        }
+    });
+    constexpr auto parts = static_cast<std::size_t>(SampledSurface::parts_of_edge);
+    parallel_rows(static_cast<int>(parts), static_cast<int>(surface.edges.size()), [&](int first, int end) {
+        for (auto edge = static_cast<std::size_t>(first); edge < static_cast<std::size_t>(end); ++edge) {
+            std::complex<double> sum = 0;
+            for (std::size_t part = 0; part < parts; ++part) {
+                sum += std::polar(1.0, -wave_number * (surface.edge_heights[edge * parts + part] - zero));
+            }
+            const std::size_t k = surface.edges[edge];
+            wave.values[k] = sum * (surface.amplitude.values[k] / static_cast<double>(parts));
+        }
+    });
 }
 
 std::vector<Warning> warnings_of(const SampledSurface& surface) {

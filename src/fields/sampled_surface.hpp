@@ -7,6 +7,10 @@
 #include "optics/instrument/instrument.hpp"
 #include "specimen/specimen.hpp"
 
+#include <glm/glm.hpp>
+
+#include <complex>
+#include <cstddef>
 #include <vector>
 
 namespace vkfv::fields {
@@ -28,11 +32,21 @@ struct SampledSurface {
     FieldGrid grid;
     Grid<double> heights;   // mm; 0 where there is none
     Grid<double> amplitude; // of reflection; 0 beside the specimen
+    Grid<glm::dvec2> slopes; // within the point's cell
+    // Points in whose cells the surface is no plane, as at the edge of a step, and the heights there at places that
+    // divide the cell evenly: parts_of_edge for each point, one after the other.
+    static constexpr int parts_of_edge = 64;
+    std::vector<std::size_t> edges;
+    std::vector<double> edge_heights;
     double lowest = 0, highest = 0;
     // Shares of the points whose neighbours differ by more phase than pi, whose radius of curvature is below the
     // wavelength, and where a neighbourhood hides a part of the light.
     double steep = 0, sharp = 0, shadowed = 0;
 };
+
+// The mean over each point's cell of a wave exp(-i q h) that the surface reflects, h less `zero` (mm): so the spectrum
+// beyond the grid's is filtered by the cell's before it folds.
+void reflect(const SampledSurface& surface, double wave_number, double zero, Grid<std::complex<double>>& wave);
 
 // Samples the specimen where the pixels look. Throws InputError, by the key, for a specimen without heights (a mesh), a
 // pattern or a material that is no mirror, and for surfaces beyond the limits of Kirchhoff's integral.

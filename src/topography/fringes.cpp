@@ -30,7 +30,9 @@ double wrapped(double phase) {
 FringeBandTransform::FringeBandTransform(int images, double step, double least, double most)
     : images_(images), step_(step) {
     const double apart = 2 * pi / (images * step);
-    for (int k = static_cast<int>(std::ceil(least / apart)); k * apart <= most && 2 * k < images; ++k) {
+    // A signal as short as the scan spreads by one multiple to either side.
+    for (int k = std::max(1, static_cast<int>(std::floor(least / apart))); (k - 1) * apart <= most && 2 * k < images;
+         ++k) {
         wave_numbers_.push_back(k * apart);
     }
     for (const double wave_number : wave_numbers_) {
