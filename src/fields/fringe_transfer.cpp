@@ -27,8 +27,24 @@ std::array<double, 4> cubic_weights(double t) {
             (t + 1) * t * (t - 1) / 6};
 }
 
+// The phase (rad) of the glass that the reference arm has more of, less its value and its delay at the reference.
+double glass_phase(const ReferenceArm& arm, double wavelength_um, double reference_um) {
+    if (!arm.glass || arm.glass_thickness == 0) {
+        return 0;
+    }
+    const auto path = [&](double um) { return wave_number_of(um * mm_per_um) * arm.glass->index(um); };
+    constexpr double apart = 1e-3; // of the wavelength, for the derivative
+    const double k = wave_number_of(wavelength_um * mm_per_um), k_reference = wave_number_of(reference_um * mm_per_um);
+    const double shorter = reference_um * (1 - apart), longer = reference_um * (1 + apart);
+    const double delay = (path(shorter) - path(longer)) /
+                         (wave_number_of(shorter * mm_per_um) - wave_number_of(longer * mm_per_um));
+    return 2 * arm.glass_thickness * (path(wavelength_um) - path(reference_um) - delay * (k - k_reference));
+}
+
+} // namespace
+
 // An even polynomial's values at evenly spaced squares of the radius, linear in between.
-class RadialPath {
+class FringeTransfer::RadialPath {
   public:
     explicit RadialPath(const optics::Wavefront& wavefront, double rim) : per_square_(samples / (rim * rim)) {
         for (int k = 0; k <= samples; ++k) {
@@ -48,22 +64,6 @@ class RadialPath {
     double per_square_;
     std::array<double, samples + 1> paths_{};
 };
-
-// The phase (rad) of the glass that the reference arm has more of, less its value and its delay at the reference.
-double glass_phase(const ReferenceArm& arm, double wavelength_um, double reference_um) {
-    if (!arm.glass || arm.glass_thickness == 0) {
-        return 0;
-    }
-    const auto path = [&](double um) { return wave_number_of(um * mm_per_um) * arm.glass->index(um); };
-    constexpr double apart = 1e-3; // of the wavelength, for the derivative
-    const double k = wave_number_of(wavelength_um * mm_per_um), k_reference = wave_number_of(reference_um * mm_per_um);
-    const double shorter = reference_um * (1 - apart), longer = reference_um * (1 + apart);
-    const double delay = (path(shorter) - path(longer)) /
-                         (wave_number_of(shorter * mm_per_um) - wave_number_of(longer * mm_per_um));
-    return 2 * arm.glass_thickness * (path(wavelength_um) - path(reference_um) - delay * (k - k_reference));
-}
-
-} // namespace
 
 struct FringeTransfer::Pupil {
     double wave_number = 0; // 1/mm

@@ -4,8 +4,8 @@
 // q_z = k (gamma_s + gamma_p), gamma = sqrt(n^2 - |.|^2), the coherent part is
 //   E(x, zeta) = sum over q_z of exp(i q_z zeta) IFFT[ H(q, q_z) FFT[ exp(-i q_z h) ] ],   I = background + 2 Re E,
 // the sum over source, pupil and spectrum of Kirchhoff's integral for a surface of heights h (P. de Groot and X. Colonna
-// de Lega, "Fourier optics modeling of interference microscopes", J. Opt. Soc. Am. A 37, B1, 2020). Its obliquity factor,
-// which is 1 in the mirror's direction, is taken as 1 everywhere.
+// de Lega, "Fourier optics modeling of interference microscopes", J. Opt. Soc. Am. A 37, B1, 2020). Its obliquity factor is
+// taken as 1 everywhere here; facet.hpp makes up for it where the surface is tilted.
 #pragma once
 
 #include "fields/reference_arm.hpp"
@@ -31,10 +31,13 @@ class FringeTransfer {
 
     int nodes() const { return nodes_; }
     double wave_number(int node) const { return first_ + node * spacing_; } // q_z, rad/mm
+    int steps() const { return steps_; } // from frequency 0 to the cutoff
+    const std::vector<std::complex<double>>& values() const { return values_; } // [step * nodes + node]
     double cutoff() const { return cutoff_; }                             // |q| / 2 pi, cycles per mm
     std::complex<double> at(int node, double frequency) const;            // frequency: |q| / 2 pi, cycles per mm
 
   private:
+    class RadialPath;
     struct Pupil;
     void add(std::size_t step, const Pupil& pupil, double frequency);
 

@@ -4,6 +4,8 @@
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
 #include "core/threads/parallel_rows.hpp"
+#include "fields/exposure_image.hpp"
+#include "fields/facet.hpp"
 #include "optics/instrument/image_quality.hpp"
 #include "optics/media/spectrum.hpp"
 
@@ -97,18 +99,14 @@ double disc_overlap(double first, double second, double apart) { // area
 
 // The image by the object's arm alone, 1 of a level surface without loss: the share of the light that a surface's slope
 // reflects into the pupil, with the contrast that incoherent waves leave.
-Grid<double> object_image(const SampledSurface& surface, double aperture, double lit, double cutoff) {
+Grid<double> object_image(const SampledSurface& surface, const FacetLight& facets, double cutoff) {
     const FieldGrid& grid = surface.grid;
     Grid<std::complex<double>> image(grid.columns, grid.rows);
-    const double whole = disc_overlap(aperture, lit, 0);
     parallel_rows(grid.columns, grid.rows, [&](int first, int end) {
         for (int row = first; row < end; ++row) {
             for (int column = 0; column < grid.columns; ++column) {
-                const glm::dvec2 slope = surface.slopes(column, row);
-                const double square = glm::dot(slope, slope);
-                const double turned = 2 * std::sqrt(square) / (1 + square); // sine of twice the slope's angle
                 image(column, row) = surface.amplitude(column, row) * surface.amplitude(column, row) *
-                                     disc_overlap(aperture, lit, turned) / whole;
+                                     facets.share(glm::length(surface.slopes(column, row)));
             }
         }
     });
@@ -127,6 +125,33 @@ Grid<double> object_image(const SampledSurface& surface, double aperture, double
     return result;
 }
 
+} // namespace
+
+void require_in_range(FocalRange range, trace::FocalPosition position) {
+    if (position.height < range.lowest || position.height > range.highest) {
+        throw RunError(fmt::format("the focal height {:.6g} um lies beyond the fields' range, {:.6g} to {:.6g} um",
+                                   position.height * um_per_mm, range.lowest * um_per_mm, range.highest * um_per_mm));
+    }
+    if (position.beside != glm::dvec2(0)) {
+        throw RunError("fields of an interferometer hold for a specimen that stands still sideways");
+    }
+}
+
+trace::Image exposure_image(const FringeFields& fields, Grid<double> flux) {
+    using Status = trace::Ledger::Status;
+    trace::Image image;
+    image.standard_error = Grid<double>(flux.columns, flux.rows);
+    const double detected = std::accumulate(flux.values.begin(), flux.values.end(), 0.0);
+    image.flux = std::move(flux);
+    image.ledger.emitted = fields.emitted;
+    image.ledger.entries = {
+        {.name = "detected", .power = detected, .status = Status::detected},
+        {.name = "not in the image", .power = fields.emitted - detected, .status = Status::beside_detector}};
+    return image;
+}
+
+namespace {
+
 class HostInterferometer final : public trace::Tracer {
   public:
     HostInterferometer(FringeFields fields, FocalRange range, trace::TracerIdentity identity)
@@ -134,18 +159,10 @@ class HostInterferometer final : public trace::Tracer {
 
     trace::Image expose(trace::FocalPosition position, std::uint32_t /*image*/) const override {
         const auto begun = std::chrono::steady_clock::now();
-        require_in_range(position);
-        trace::Image image;
-        image.flux = Grid<double>(fields_.pixels.columns, fields_.pixels.rows);
-        image.standard_error = Grid<double>(fields_.pixels.columns, fields_.pixels.rows);
-        add_fringes(position.height, image.flux);
-        const double detected = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
-        image.ledger.emitted = fields_.emitted;
-        using Status = trace::Ledger::Status;
-        image.ledger.entries = {{.name = "detected", .power = detected, .status = Status::detected},
-                                {.name = "not in the image",
-                                 .power = fields_.emitted - detected,
-                                 .status = Status::beside_detector}};
+        require_in_range(range_, position);
+        Grid<double> flux(fields_.pixels.columns, fields_.pixels.rows);
+        add_fringes(position.height, flux);
+        trace::Image image = exposure_image(fields_, std::move(flux));
         image.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
         return image;
     }
@@ -155,17 +172,6 @@ class HostInterferometer final : public trace::Tracer {
     trace::TracerIdentity identity() const override { return identity_; }
 
   private:
-    void require_in_range(trace::FocalPosition position) const {
-        if (position.height < range_.lowest || position.height > range_.highest) {
-            throw RunError(fmt::format("the focal height {:.6g} um lies beyond the fields' range, {:.6g} to {:.6g} um",
-                                       position.height * um_per_mm, range_.lowest * um_per_mm,
-                                       range_.highest * um_per_mm));
-        }
-        if (position.beside != glm::dvec2(0)) {
-            throw RunError("fields of an interferometer hold for a specimen that stands still sideways");
-        }
-    }
-
     // Sums over the nodes in a fixed order, in blocks of pixels that stay in the cache.
     void add_fringes(double height, Grid<double>& flux) const {
         constexpr std::size_t block = 64;
@@ -210,14 +216,14 @@ FringeBand fringe_band(const optics::Spectrum& spectrum, double numerical_apertu
             .most = twice_k(spectrum.shortest_um) * index};
 }
 
-FringeFields fringe_fields(const optics::Instrument& instrument, const optics::InstrumentDescription& description,
-                           const specimen::Specimen& specimen, const ReferenceArm& arm, FocalRange range) {
+FieldParts field_parts(const optics::Instrument& instrument, const optics::InstrumentDescription& description,
+                       const specimen::Specimen& specimen, const ReferenceArm& arm, FocalRange range) {
     const double fill = source_fill_of(instrument, description), lit_share = std::min(1.0, fill);
     const auto& spectrum = description.spectrum;
     const double aperture = instrument.first_order.numerical_aperture, pitch = instrument.first_order.pixel_pitch;
     const FieldGrid grid =
         field_grid(description.detector_pixels, pitch, 2 * aperture / (spectrum.shortest_um * mm_per_um));
-    const SampledSurface surface = sample_surface(specimen, instrument, grid, spectrum.reference_um,
+    SampledSurface surface = sample_surface(specimen, instrument, grid, spectrum.reference_um,
                                                   std::min(0.999, aperture / instrument.first_order.object_index));
     log_warnings(warnings_of(surface));
     const double aside = glm::length(arm.tilt) * pitch * std::hypot(grid.pixels.columns, grid.pixels.rows) / 2;
@@ -225,7 +231,7 @@ FringeFields fringe_fields(const optics::Instrument& instrument, const optics::I
                               0.5 * spectrum.reference_um * mm_per_um;
     const double middle_height = (surface.highest + surface.lowest) / 2, middle = (range.highest + range.lowest) / 2;
     const auto wavefronts = wavefronts_of(instrument, spectrum, half_range);
-    const FringeTransfer transfer(wavefronts, arm, fill, middle - middle_height, half_range, spectrum.reference_um);
+    FringeTransfer transfer(wavefronts, arm, fill, middle - middle_height, half_range, spectrum.reference_um);
     spdlog::debug("fields: {} x {} points, {} wavelengths, {} wave numbers", grid.columns, grid.rows,
                   wavefronts.size(), transfer.nodes());
 
@@ -238,17 +244,36 @@ FringeFields fringe_fields(const optics::Instrument& instrument, const optics::I
     const double of_pixel = radiance * pitch * pitch * pi * (lit * lit - dark * dark) *
                             instrument.splitter_reflectance * instrument.splitter_transmittance * share_of_arm;
     fields.signal = 2 * of_pixel * std::sqrt(arm.reflectance);
-    const Grid<double> object = object_image(surface, rim, lit, 2 * aperture / (spectrum.reference_um * mm_per_um));
+    const FacetLight facets(rim, lit, dark, instrument.first_order.object_index);
+    const Grid<double> object = object_image(surface, facets, 2 * aperture / (spectrum.reference_um * mm_per_um));
     fields.background = Grid<float>(grid.pixels.columns, grid.pixels.rows);
     bin(object, grid, fields.background);
     for (float& value : fields.background.values) {
         value = static_cast<float>(of_pixel * (arm.reflectance + static_cast<double>(value)));
     }
 
+    for (std::size_t k = 0; k < surface.slopes.values.size(); ++k) {
+        surface.amplitude.values[k] *= facets.amplitude(glm::length(surface.slopes.values[k]));
+    }
+    for (int node = 0; node < transfer.nodes(); ++node) {
+        fields.wave_numbers.push_back(transfer.wave_number(node));
+    }
+    return {.surface = std::move(surface),
+            .transfer = std::move(transfer),
+            .fields = std::move(fields),
+            .middle_height = middle_height,
+            .tilt = arm.tilt};
+}
+
+void add_nodes(FieldParts& parts) {
+    const SampledSurface& surface = parts.surface;
+    const FringeTransfer& transfer = parts.transfer;
+    const double middle_height = parts.middle_height;
+    const glm::dvec2 tilt = parts.tilt;
+    const FieldGrid& grid = surface.grid;
     Grid<std::complex<double>> waves(grid.columns, grid.rows);
     for (int node = 0; node < transfer.nodes(); ++node) {
         const double q = transfer.wave_number(node);
-        fields.wave_numbers.push_back(q);
         reflect(surface, q, middle_height, waves);
         fourier_transform(waves);
         parallel_rows(grid.columns, grid.rows, [&](int first, int end) {
@@ -261,19 +286,25 @@ FringeFields fringe_fields(const optics::Instrument& instrument, const optics::I
             }
         });
         inverse_fourier_transform(waves);
-        if (arm.tilt != glm::dvec2(0)) {
+        if (tilt != glm::dvec2(0)) {
             const double x0 = -(grid.margin_x + 0.5 * (grid.pixels.columns * grid.parts - 1));
             const double y0 = -(grid.margin_y + 0.5 * (grid.pixels.rows * grid.parts - 1));
             for (int row = 0; row < grid.rows; ++row) {
                 for (int column = 0; column < grid.columns; ++column) {
                     const glm::dvec2 place = grid.pitch * glm::dvec2(x0 + column, y0 + row);
-                    waves(column, row) *= std::polar(1.0, q * glm::dot(arm.tilt, place));
+                    waves(column, row) *= std::polar(1.0, q * glm::dot(tilt, place));
                 }
             }
         }
-        bin(waves, grid, fields.nodes.emplace_back(grid.pixels.columns, grid.pixels.rows));
+        bin(waves, grid, parts.fields.nodes.emplace_back(grid.pixels.columns, grid.pixels.rows));
     }
-    return fields;
+}
+
+FringeFields fringe_fields(const optics::Instrument& instrument, const optics::InstrumentDescription& description,
+                           const specimen::Specimen& specimen, const ReferenceArm& arm, FocalRange range) {
+    FieldParts parts = field_parts(instrument, description, specimen, arm, range);
+    add_nodes(parts);
+    return std::move(parts.fields);
 }
 
 std::unique_ptr<trace::Tracer> make_host_interferometer(const optics::Instrument& instrument,

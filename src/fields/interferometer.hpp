@@ -30,6 +30,22 @@ struct FocalRange {
     double lowest = 0, highest = 0; // mm
 };
 
+// All that the fields of the nodes are made of, by the host or by a device.
+struct FieldParts {
+    SampledSurface surface;
+    FringeTransfer transfer;
+    FringeFields fields;         // without the nodes' fields
+    double middle_height = 0;    // mm, which heights are counted from
+    glm::dvec2 tilt{0};          // slopes of the reference mirror
+};
+
+// Throws InputError where a part of the instrument or the specimen has no meaning here. description: of the instrument.
+FieldParts field_parts(const optics::Instrument& instrument, const optics::InstrumentDescription& description,
+                       const specimen::Specimen& specimen, const ReferenceArm& arm, FocalRange range);
+
+// Makes the nodes' fields by the host's cores in double.
+void add_nodes(FieldParts& parts);
+
 // Makes the fields by the host's cores in double. description: of the instrument. Throws InputError where a part of the
 // instrument or the specimen has no meaning here.
 FringeFields fringe_fields(const optics::Instrument& instrument, const optics::InstrumentDescription& description,

@@ -20,7 +20,7 @@ struct ReferenceArm {
     // Glass that light of the reference arm passes twice beyond what light of the object's arm does; its delay at the
     // reference wavelength is balanced by the mirror's place, so that its dispersion is left.
     double glass_thickness = 0;
-    std::optional<optics::Medium> glass;
+    std::optional<optics::Medium> glass{};
 };
 
 } // namespace vkfv::fields

@@ -130,7 +130,7 @@ SampledSurface sample_surface(const specimen::Specimen& specimen, const optics::
                           .remedy = "Choose a kind that is a height map, or remove [reference_arm]."});
     }
     const double amplitude = std::sqrt(reflectance_of(specimen, wavelength_um));
-    SampledSurface surface{.grid = grid, .heights = {}, .amplitude = {}};
+    SampledSurface surface{.grid = grid};
     const double x0 = -(grid.margin_x + 0.5 * (grid.pixels.columns * grid.parts - 1)) * grid.pitch;
     const double y0 = -(grid.margin_y + 0.5 * (grid.pixels.rows * grid.parts - 1)) * grid.pitch;
     const PixelGrid points{.columns = grid.columns,
@@ -192,13 +192,13 @@ SampledSurface sample_surface(const specimen::Specimen& specimen, const optics::
     surface.steep = static_cast<double>(steep) / count;
     surface.sharp = static_cast<double>(sharp) / count;
     surface.shadowed = static_cast<double>(shadowed) / count;
-    if (surface.steep > most_beyond) {
-        refuse("walls or slopes steeper than a quarter of the wavelength from point to point", surface.steep,
-               fmt::format("slopes up to {:.3g}", most_step / grid.pitch), "Take a gentler surface.");
-    }
     if (surface.sharp > most_beyond) {
         refuse("a curvature whose radius is below the wavelength", surface.sharp, "such curvature",
                "Take a smoother surface, whose roughness has a longer correlation length.");
+    }
+    if (surface.steep > most_beyond) {
+        refuse("walls or slopes steeper than a quarter of the wavelength from point to point", surface.steep,
+               fmt::format("slopes up to {:.3g}", most_step / grid.pitch), "Take a gentler surface.");
     }
     if (surface.shadowed > most_beyond) {
         refuse("shadow", surface.shadowed, "shadow", "Take a gentler surface, or a smaller aperture.");

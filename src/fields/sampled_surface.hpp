@@ -30,14 +30,14 @@ FieldGrid field_grid(ImageSize pixels, double pitch, double cutoff);
 
 struct SampledSurface {
     FieldGrid grid;
-    Grid<double> heights;   // mm; 0 where there is none
-    Grid<double> amplitude; // of reflection; 0 beside the specimen
-    Grid<glm::dvec2> slopes; // within the point's cell
+    Grid<double> heights{};   // mm; 0 where there is none
+    Grid<double> amplitude{}; // of reflection; 0 beside the specimen
+    Grid<glm::dvec2> slopes{}; // within the point's cell
     // Points in whose cells the surface is no plane, as at the edge of a step, and the heights there at places that
     // divide the cell evenly: parts_of_edge for each point, one after the other.
     static constexpr int parts_of_edge = 64;
-    std::vector<std::size_t> edges;
-    std::vector<double> edge_heights;
+    std::vector<std::size_t> edges{};
+    std::vector<double> edge_heights{};
     double lowest = 0, highest = 0;
     // Shares of the points whose neighbours differ by more phase than pi, whose radius of curvature is below the
     // wavelength, and where a neighbourhood hides a part of the light.

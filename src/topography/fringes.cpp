@@ -115,6 +115,7 @@ FringeFit FringeBandTransform::fit(const std::vector<double>& signal, double fir
     }
     offset /= weights;
     const double slope = moment / spread;
+    fit.wave_number_deviation = std::sqrt(spread / weights);
     double residual = 0;
     for (std::size_t bin = 0; bin < wave_numbers_.size(); ++bin) {
         const double apart = wave_numbers_[bin] - fit.mean_wave_number;
@@ -219,10 +220,12 @@ Topography FringeEvaluator::finish(double x0, double y0, double pitch) {
             continue;
         }
         double height = fit.envelope_height, noise = fit.slope_deviation;
+        double bend = fit.residual / fit.wave_number_deviation;
         if (by_phase) {
             const double beyond = wrapped(fit.phase - fit.mean_wave_number * (fit.at - fit.envelope_height) - gap);
             height -= beyond / fit.mean_wave_number;
             noise = fit.phase_deviation / fit.mean_wave_number;
+            bend = fit.residual / fit.mean_wave_number;
         }
         if (!readings_.empty()) { // heights by the scale's readings, linear between them
             const double place = std::clamp((height - z_.front()) / step, 0.0, images - 1.0);
@@ -232,7 +235,7 @@ Topography FringeEvaluator::finish(double x0, double y0, double pitch) {
         }
         result.height.height.values[pixel] = height;
         result.height_noise.values[pixel] = noise;
-        result.height_uncertainty.values[pixel] = noise;
+        result.height_uncertainty.values[pixel] = std::hypot(noise, bend);
     }
     result.stack.smoothing_steps = 0;
     double noise = 0;

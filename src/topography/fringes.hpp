@@ -7,6 +7,9 @@
 // "Surface profiling by analysis of white-light interferograms in the spatial frequency domain", J. Mod. Opt. 42, 389,
 // 1995). The slope tells the envelope's height. The phase at the mean K, less its mean difference from the envelope over
 // the field, tells the height within a fringe, whose order is the one nearest to the envelope's height.
+//
+// The uncertainty of a height is the noise's, and the error that the phases' distance from the line may hide: beside
+// edges, and where slopes or dispersion change the fringes, the phase is no line.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
@@ -25,6 +28,7 @@ struct FringeFit {
     double phase = 0;           // at mean_wave_number, relative to the image at `at`
     double at = 0;              // height of the image with the highest envelope
     double mean_wave_number = 0;
+    double wave_number_deviation = 0; // standard deviation of K, weighted
     double slope_deviation = 0; // standard deviations by noise: of envelope_height, and of `phase`
     double phase_deviation = 0;
     double amplitude = 0;  // of the envelope's maximum, in the images' unit
