@@ -221,9 +221,11 @@ Topography FringeEvaluator::finish(double x0, double y0, double pitch) {
         }
         double height = fit.envelope_height, noise = fit.slope_deviation;
         double bend = fit.residual / fit.wave_number_deviation;
+        const double apart = wrapped(fit.phase - fit.mean_wave_number * (fit.at - fit.envelope_height) - gap) /
+                             fit.mean_wave_number;
+        const double disagreement = std::sqrt(std::max(0.0, apart * apart - noise * noise));
         if (by_phase) {
-            const double beyond = wrapped(fit.phase - fit.mean_wave_number * (fit.at - fit.envelope_height) - gap);
-            height -= beyond / fit.mean_wave_number;
+            height -= apart;
             noise = fit.phase_deviation / fit.mean_wave_number;
             bend = fit.residual / fit.mean_wave_number;
         }
@@ -235,7 +237,7 @@ Topography FringeEvaluator::finish(double x0, double y0, double pitch) {
         }
         result.height.height.values[pixel] = height;
         result.height_noise.values[pixel] = noise;
-        result.height_uncertainty.values[pixel] = std::hypot(noise, bend);
+        result.height_uncertainty.values[pixel] = std::hypot(noise, bend, disagreement);
     }
     result.stack.smoothing_steps = 0;
     double noise = 0;

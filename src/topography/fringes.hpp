@@ -8,8 +8,8 @@
 // 1995). The slope tells the envelope's height. The phase at the mean K, less its mean difference from the envelope over
 // the field, tells the height within a fringe, whose order is the one nearest to the envelope's height.
 //
-// The uncertainty of a height is the noise's, and the error that the phases' distance from the line may hide: beside
-// edges, and where slopes or dispersion change the fringes, the phase is no line.
+// The uncertainty of a height is the noise's, what the phases' distance from the line may hide, and by how much more
+// than by noise envelope and phase disagree: beside edges, and where slopes or dispersion change the fringes, they do.
 #pragma once
 
 #include "core/mathematics/grid.hpp"
