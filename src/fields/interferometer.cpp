@@ -216,15 +216,23 @@ FringeBand fringe_band(const optics::Spectrum& spectrum, double numerical_apertu
             .most = twice_k(spectrum.shortest_um) * index};
 }
 
+SampledSurface surface_of(const optics::Instrument& instrument, const optics::InstrumentDescription& description,
+                          const specimen::Specimen& specimen) {
+    const auto& spectrum = description.spectrum;
+    const double aperture = instrument.first_order.numerical_aperture;
+    return sample_surface(specimen,
+                          field_grid(description.detector_pixels, instrument.first_order.pixel_pitch,
+                                     2 * aperture / (spectrum.shortest_um * mm_per_um)),
+                          spectrum.reference_um, std::min(0.999, aperture / instrument.first_order.object_index));
+}
+
 FieldParts field_parts(const optics::Instrument& instrument, const optics::InstrumentDescription& description,
                        const specimen::Specimen& specimen, const ReferenceArm& arm, FocalRange range) {
     const double fill = source_fill_of(instrument, description), lit_share = std::min(1.0, fill);
     const auto& spectrum = description.spectrum;
     const double aperture = instrument.first_order.numerical_aperture, pitch = instrument.first_order.pixel_pitch;
-    const FieldGrid grid =
-        field_grid(description.detector_pixels, pitch, 2 * aperture / (spectrum.shortest_um * mm_per_um));
-    SampledSurface surface = sample_surface(specimen, instrument, grid, spectrum.reference_um,
-                                                  std::min(0.999, aperture / instrument.first_order.object_index));
+    SampledSurface surface = surface_of(instrument, description, specimen);
+    const FieldGrid grid = surface.grid;
     log_warnings(warnings_of(surface));
     const double aside = glm::length(arm.tilt) * pitch * std::hypot(grid.pixels.columns, grid.pixels.rows) / 2;
     const double half_range = (range.highest - range.lowest + surface.highest - surface.lowest) / 2 + aside +

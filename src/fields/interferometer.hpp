@@ -30,6 +30,10 @@ struct FocalRange {
     double lowest = 0, highest = 0; // mm
 };
 
+// The surface as the fields see it. Throws InputError where they do not hold for it.
+SampledSurface surface_of(const optics::Instrument& instrument, const optics::InstrumentDescription& description,
+                          const specimen::Specimen& specimen);
+
 // All that the fields of the nodes are made of, by the host or by a device.
 struct FieldParts {
     SampledSurface surface;

@@ -120,8 +120,7 @@ FieldGrid field_grid(ImageSize pixels, double pitch, double cutoff) {
     return grid;
 }
 
-SampledSurface sample_surface(const specimen::Specimen& specimen, const optics::Instrument& /*instrument*/,
-                              const FieldGrid& grid, double wavelength_um, double aperture_sine) {
+SampledSurface sample_surface(const specimen::Specimen& specimen, const FieldGrid& grid, double wavelength_um, double aperture_sine) {
     if (std::holds_alternative<specimen::Mesh>(specimen.geometry)) {
         throw InputError({.where = {},
                           .key = "specimen.kind",

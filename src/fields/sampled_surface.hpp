@@ -50,8 +50,7 @@ void reflect(const SampledSurface& surface, double wave_number, double zero, Gri
 
 // Samples the specimen where the pixels look. Throws InputError, by the key, for a specimen without heights (a mesh), a
 // pattern or a material that is no mirror, and for surfaces beyond the limits of Kirchhoff's integral.
-SampledSurface sample_surface(const specimen::Specimen& specimen, const optics::Instrument& instrument,
-                              const FieldGrid& grid, double wavelength_um, double aperture_sine);
+SampledSurface sample_surface(const specimen::Specimen& specimen, const FieldGrid& grid, double wavelength_um, double aperture_sine);
 
 std::vector<Warning> warnings_of(const SampledSurface& surface);
 

@@ -311,8 +311,10 @@ Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& ban
         if (feature) {
             evaluation_.dimensions = standard_dimensions(
                 *feature, measured, known.undistorted,
-                FocusEffects{.pull = &evaluation_.topography.brightness_pull,
-                             .window = {evaluation_.options.window_px, evaluation_.options.window_shape}});
+                fringes_ ? std::nullopt
+                         : std::optional(FocusEffects{
+                               .pull = &evaluation_.topography.brightness_pull,
+                               .window = {evaluation_.options.window_px, evaluation_.options.window_shape}}));
             if (errors.hidden_uncertainty > 0) {
                 for (auto& dimension : evaluation_.dimensions) {
                     dimension.measured.standard_error = surface::undefined;
