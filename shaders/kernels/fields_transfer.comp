@@ -21,7 +21,7 @@ void main() {
             uint64_t at = uint64_t(below) * uint64_t(of.nodes) + uint64_t(of.first + place / points);
             factor = mix(complex_at(of.transfer, at), complex_at(of.transfer, at + uint64_t(of.nodes)),
                          step - float(below)) /
-                     (sinc_of(x / float(of.columns)) * sinc_of(y / float(of.rows)) * float(points));
+                     float(points);
         }
         waves[place] = product(waves[place], factor);
     }

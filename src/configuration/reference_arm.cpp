@@ -15,25 +15,26 @@ namespace {
 using ArmKind = fields::ReferenceArm::Kind;
 
 const ChoiceKey<ArmKind> arm_kind("kind",
-                           {{ArmKind::linnik, "linnik", "an objective of its own, alike"},
-                            {ArmKind::michelson, "michelson", "a splitter below the objective"},
-                            {ArmKind::mirau, "mirau", "the mirror in the middle of the objective's front lens"}},
-                           ArmKind::michelson, "Where the reference mirror stands.");
+                                  {{ArmKind::linnik, "linnik", "an objective of its own, alike"},
+                                   {ArmKind::michelson, "michelson", "a splitter below the objective"},
+                                   {ArmKind::mirau, "mirau", "the mirror in the middle of the objective's front lens"}},
+                                  ArmKind::michelson, "Where the reference mirror stands.");
 const NumberKey mirror_share("reflectance", share_range, 1.0,
-                            "Of the reference mirror; fringes have the highest contrast if it is the specimen's.");
+                             "Of the reference mirror; fringes have the highest contrast if it is the specimen's.");
 const NumberKey mirror_tilt_x("tilt_x_deg", NumberRange::within(-1, 1), 0.0,
-                       "Tilt of the mirror about the x axis, by which its image in the object rises along y.");
+                              "Tilt of the mirror about the x axis, by which its image in the object rises along y.");
 const NumberKey mirror_tilt_y("tilt_y_deg", NumberRange::within(-1, 1), 0.0,
-                       "Tilt of the mirror about the y axis, by which its image in the object falls along x.");
-const NumberKey mirror_defocus = of_kinds({"linnik", "michelson"},
-                                   NumberKey("defocus_um", NumberRange::within(-100, 100), 0.0,
-                                             "Distance of the mirror from the focus of its objective."));
+                              "Tilt of the mirror about the y axis, by which its image in the object falls along x.");
+const NumberKey mirror_defocus =
+    of_kinds({"linnik", "michelson"}, NumberKey("defocus_um", NumberRange::within(-100, 100), 0.0,
+                                                "Distance of the mirror from the focus of its objective."));
 const NumberKey obscuration =
     of_kinds({"mirau"}, NumberKey("obscuration", {.minimum = 0, .maximum = 0.9}, 0.0,
                                   "Radius of the pupil's part that the mirror hides, over the pupil's radius."));
-const NumberKey arm_glass_thickness("glass_thickness_um", NumberRange::finite(), 0.0,
-                                "Glass that the reference arm has more than the object's arm; the mirror balances its "
-                                "delay at the mean wavelength.");
+const NumberKey
+    arm_glass_thickness("glass_thickness_um", NumberRange::finite(), 0.0,
+                        "Glass that the reference arm has more than the object's arm; the mirror balances its "
+                        "delay at the mean wavelength.");
 const TextKey arm_glass("glass", Default::of(std::string("N-BK7")), "That glass.");
 
 // Keys and tables that say nothing about an interferometer's images, or whose effect these do not have yet.
@@ -107,7 +108,8 @@ const KeyTable& reference_arm_keys() {
         .meaning = "The reference mirror that makes the instrument an interferometer: images are of coherent fields.",
         .subject = "a reference arm",
         .kind = "kind",
-        .keys = {&arm_kind, &mirror_share, &mirror_tilt_x, &mirror_tilt_y, &mirror_defocus, &obscuration, &arm_glass_thickness, &arm_glass}};
+        .keys = {&arm_kind, &mirror_share, &mirror_tilt_x, &mirror_tilt_y, &mirror_defocus, &obscuration,
+                 &arm_glass_thickness, &arm_glass}};
     return table;
 }
 
@@ -128,20 +130,18 @@ void read_reference_arm(const TomlTable& root, Configuration& configuration) {
         arm.defocus = from_um(section.number(mirror_defocus));
     }
     arm.glass_thickness = from_um(section.number(arm_glass_thickness));
-    if (arm.glass_thickness != 0) {
-        arm.glass = read_glass(section, arm_glass, configuration);
-    } else if (section.has(arm_glass)) {
-        section.note(arm_glass, "a glass_thickness_um beside it", "Give the thickness, or remove the glass.");
-    }
+    arm.glass = read_glass(section, arm_glass, configuration);
     refuse_meaningless(root);
     // These keys have defaults, which a configuration that was written in full states.
     if (configuration.instrument.interfaces.model != optics::Interfaces::Model::ideal) {
-        root.table("interfaces").note("model", "\"ideal\" beside [reference_arm]: the fields have no reflection losses",
-                                      "Set it so, or remove [reference_arm].");
+        root.table("interfaces")
+            .note("model", "\"ideal\" beside [reference_arm]: the fields have no reflection losses",
+                  "Set it so, or remove [reference_arm].");
     }
     if (configuration.instrument.fill_factor != 1) {
-        root.table("detector").note("fill_factor", "1 beside [reference_arm]: the fields' pixels are sensitive all over",
-                                    "Set it so, or remove [reference_arm].");
+        root.table("detector")
+            .note("fill_factor", "1 beside [reference_arm]: the fields' pixels are sensitive all over",
+                  "Set it so, or remove [reference_arm].");
     }
     if (configuration.stage && configuration.stage->runout != 0) {
         root.table("stage").note("runout_um", "0 beside [reference_arm]: the fields' specimen stands still sideways",

@@ -223,16 +223,32 @@ const NumberKey most_memory = of_kinds(
 } // namespace
 
 const KeyTable& topography_keys() {
-    static const KeyTable table{
-        .path = "topography",
-        .presence = KeyTable::Presence::optional,
-        .meaning = "How heights are found in the images.",
-        .subject = "a topography",
-        .kind = "",
-        .keys = {&method, &focus_measure, &window,       &window_shape,     &smoothing,       &false_peak_rate,
-                 &most_rival,    &peak,         &peak_range,       &least_contrast,  &most_fit_residual,
-                 &most_peaks,    &registration, &place_by_texture, &repair_outliers, &evaluate_on,
-                 &flatness_file, &form,         &filter,           &s_filter,        &l_filter}};
+    static const KeyTable table{.path = "topography",
+                                .presence = KeyTable::Presence::optional,
+                                .meaning = "How heights are found in the images.",
+                                .subject = "a topography",
+                                .kind = "",
+                                .keys = {&method,
+                                         &focus_measure,
+                                         &window,
+                                         &window_shape,
+                                         &smoothing,
+                                         &false_peak_rate,
+                                         &most_rival,
+                                         &peak,
+                                         &peak_range,
+                                         &least_contrast,
+                                         &most_fit_residual,
+                                         &most_peaks,
+                                         &registration,
+                                         &place_by_texture,
+                                         &repair_outliers,
+                                         &evaluate_on,
+                                         &flatness_file,
+                                         &form,
+                                         &filter,
+                                         &s_filter,
+                                         &l_filter}};
     return table;
 }
 
@@ -257,8 +273,9 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
         section.record(method, toml_quoted(method.name_of(options.method)));
     }
     if (fringes == (options.method == Method::focus)) {
-        section.fail(method, fringes ? "\"envelope\" or \"phase\" with a [reference_arm]"
-                                     : "\"focus\" without a [reference_arm]",
+        section.fail(method,
+                     fringes ? "\"envelope\" or \"phase\" with a [reference_arm]"
+                             : "\"focus\" without a [reference_arm]",
                      fringes ? "Choose one of these: fringes hide the texture that focus is seen by."
                              : "Choose it, or give a [reference_arm].");
     }

@@ -43,7 +43,8 @@ std::uint32_t number(std::size_t value) {
 
 template <class Value>
 vulkan::Buffer buffer_with(const vulkan::Device& device, const std::vector<Value>& values) {
-    vulkan::Buffer buffer(device, std::max<std::size_t>(1, values.size()) * sizeof(Value), Memory::device, memory_remedy);
+    vulkan::Buffer buffer(device, std::max<std::size_t>(1, values.size()) * sizeof(Value), Memory::device,
+                          memory_remedy);
     if (!values.empty()) {
         buffer.write_values(std::span<const Value>(values));
     }
@@ -97,7 +98,8 @@ void make_fields(const vulkan::Device& device, const FieldParts& parts, const vu
                                         vulkan::FourierPlanes::Direction::inverse);
     const auto kernel = [&](const char* name, std::span<const std::uint32_t> code) {
         return vulkan::Kernel(device, name, code,
-                              {{kernels::FIELDS_BINDING_WAVES, vulkan::BindingKind::storage_buffer}}, sizeof(FieldBatch));
+                              {{kernels::FIELDS_BINDING_WAVES, vulkan::BindingKind::storage_buffer}},
+                              sizeof(FieldBatch));
     };
     const vulkan::Kernel reflect = kernel("fields_reflect", fields_reflect),
                          mean_of_edges = kernel("fields_edges", fields_edges),
@@ -118,7 +120,8 @@ void make_fields(const vulkan::Device& device, const FieldParts& parts, const vu
                      .nodes = static_cast<std::uint32_t>(nodes),
                      .steps = static_cast<std::uint32_t>(parts.transfer.steps()),
                      .first_turns = static_cast<float>(parts.transfer.wave_number(0) / (2 * pi)),
-                     .turns = static_cast<float>((parts.transfer.wave_number(1) - parts.transfer.wave_number(0)) / (2 * pi)),
+                     .turns =
+                         static_cast<float>((parts.transfer.wave_number(1) - parts.transfer.wave_number(0)) / (2 * pi)),
                      .steps_a_column = static_cast<float>(steps_a_cycle / (grid.columns * grid.pitch)),
                      .steps_a_row = static_cast<float>(steps_a_cycle / (grid.rows * grid.pitch)),
                      .pitch = static_cast<float>(grid.pitch),
@@ -226,8 +229,9 @@ class DeviceInterferometer final : public trace::Tracer {
         return begin(position, image).get();
     }
 
-    std::future<trace::Image> begin(trace::FocalPosition position, std::uint32_t /*image*/,
-                                    std::shared_ptr<const trace::Checkpoints> /*checkpoints*/ = nullptr) const override {
+    std::future<trace::Image>
+    begin(trace::FocalPosition position, std::uint32_t /*image*/,
+          std::shared_ptr<const trace::Checkpoints> /*checkpoints*/ = nullptr) const override {
         const auto begun = std::chrono::steady_clock::now();
         require_in_range(range_, position);
         std::vector<std::complex<float>> phases;

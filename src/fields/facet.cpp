@@ -16,8 +16,8 @@ constexpr int lattice = 160; // points across the source
 
 FacetLight::FacetLight(double pupil_rim, double source_rim, double dark_rim, double index) {
     // A facet turns light by twice its angle; beyond the sum of both half angles none reaches the pupil.
-    const double most = std::tan(std::min(1.4, (std::asin(std::min(0.9999, pupil_rim / index)) +
-                                                std::asin(std::min(0.9999, source_rim / index))) / 2));
+    const double most = std::tan(std::min(
+        1.4, (std::asin(std::min(0.9999, pupil_rim / index)) + std::asin(std::min(0.9999, source_rim / index))) / 2));
     step_ = most / (slopes - 1);
     for (int k = 0; k < slopes; ++k) {
         const double slope = k * step_;

@@ -12,8 +12,8 @@ namespace vkfv::fields {
 
 namespace {
 
-constexpr double most_phase = 0.8; // rad, from node to node at the ends of the range: cubic weights are then off by 1e-2
-                                   // there, and by 1e-4 in its middle half
+constexpr double most_phase = 0.8; // rad, from node to node at the ends of the range: cubic weights are then off by
+                                   // 1e-2 there, and by 1e-4 in its middle half
 constexpr int frequency_steps = 256;
 constexpr double edge_nodes = 2; // nodes beyond the last wave number, which cubic weights reach
 
@@ -36,8 +36,8 @@ double glass_phase(const ReferenceArm& arm, double wavelength_um, double referen
     constexpr double apart = 1e-3; // of the wavelength, for the derivative
     const double k = wave_number_of(wavelength_um * mm_per_um), k_reference = wave_number_of(reference_um * mm_per_um);
     const double shorter = reference_um * (1 - apart), longer = reference_um * (1 + apart);
-    const double delay = (path(shorter) - path(longer)) /
-                         (wave_number_of(shorter * mm_per_um) - wave_number_of(longer * mm_per_um));
+    const double delay =
+        (path(shorter) - path(longer)) / (wave_number_of(shorter * mm_per_um) - wave_number_of(longer * mm_per_um));
     return 2 * arm.glass_thickness * (path(wavelength_um) - path(reference_um) - delay * (k - k_reference));
 }
 

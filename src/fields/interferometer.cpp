@@ -46,21 +46,22 @@ double source_fill_of(const optics::Instrument& instrument, const optics::Instru
 
 std::vector<optics::Wavefront> wavefronts_of(const optics::Instrument& instrument, const optics::Spectrum& spectrum,
                                              double half_range) {
-    const int wanted = spectrum.monochromatic()
-                           ? 1
-                           : wavelengths_for(spectrum.shortest_um, spectrum.longest_um, half_range);
+    const int wanted =
+        spectrum.monochromatic() ? 1 : wavelengths_for(spectrum.shortest_um, spectrum.longest_um, half_range);
     auto wavefronts = optics::wavefronts_of(
         instrument, optics::spectral_nodes(spectrum.bins, spectrum.centre(), spectrum.half_width(), wanted));
     for (const auto& wavefront : wavefronts) {
         if (!wavefront.round()) {
-            refuse("objective", "a displaced part", "an instrument that is symmetric about its axis with a "
-                   "[reference_arm]", "Take the displacement out.");
+            refuse("objective", "a displaced part",
+                   "an instrument that is symmetric about its axis with a "
+                   "[reference_arm]",
+                   "Take the displacement out.");
         }
     }
     return wavefronts;
 }
 
-// The mean over each pixel of values on the grid.
+// The mean over each pixel of values on the grid, which are means over its cells.
 template <class Value, class Result>
 void bin(const Grid<Value>& values, const FieldGrid& grid, Grid<Result>& pixels) {
     parallel_rows(pixels.columns, pixels.rows, [&](int first, int end) {
@@ -76,11 +77,6 @@ void bin(const Grid<Value>& values, const FieldGrid& grid, Grid<Result>& pixels)
             }
         }
     });
-}
-
-// The transform of a cell at a frequency in cycles per point, by which the mean over cells weakens a wave.
-double of_cell(double frequency) {
-    return frequency == 0 ? 1 : std::sin(pi * frequency) / (pi * frequency);
 }
 
 double disc_overlap(double first, double second, double apart) { // area
@@ -113,8 +109,8 @@ Grid<double> object_image(const SampledSurface& surface, const FacetLight& facet
     fourier_transform(image);
     for (int row = 0; row < grid.rows; ++row) {
         for (int column = 0; column < grid.columns; ++column) {
-            const double f = std::hypot(fourier_frequency(column, grid.columns), fourier_frequency(row, grid.rows)) /
-                             grid.pitch;
+            const double f =
+                std::hypot(fourier_frequency(column, grid.columns), fourier_frequency(row, grid.rows)) / grid.pitch;
             image(column, row) *= disc_overlap(1, 1, 2 * f / cutoff) / pi;
         }
     }
@@ -211,8 +207,7 @@ class HostInterferometer final : public trace::Tracer {
 
 FringeBand fringe_band(const optics::Spectrum& spectrum, double numerical_aperture, double index) {
     const auto twice_k = [](double um) { return 4 * pi / (um * mm_per_um); };
-    return {.least = twice_k(spectrum.longest_um) *
-                     std::sqrt(index * index - numerical_aperture * numerical_aperture),
+    return {.least = twice_k(spectrum.longest_um) * std::sqrt(index * index - numerical_aperture * numerical_aperture),
             .most = twice_k(spectrum.shortest_um) * index};
 }
 
@@ -240,8 +235,8 @@ FieldParts field_parts(const optics::Instrument& instrument, const optics::Instr
     const double middle_height = (surface.highest + surface.lowest) / 2, middle = (range.highest + range.lowest) / 2;
     const auto wavefronts = wavefronts_of(instrument, spectrum, half_range);
     FringeTransfer transfer(wavefronts, arm, fill, middle - middle_height, half_range, spectrum.reference_um);
-    spdlog::debug("fields: {} x {} points, {} wavelengths, {} wave numbers", grid.columns, grid.rows,
-                  wavefronts.size(), transfer.nodes());
+    spdlog::debug("fields: {} x {} points, {} wavelengths, {} wave numbers", grid.columns, grid.rows, wavefronts.size(),
+                  transfer.nodes());
 
     FringeFields fields{.pixels = grid.pixels, .wave_numbers = {}, .nodes = {}, .background = {}};
     fields.height_offset = middle;
@@ -289,7 +284,7 @@ void add_nodes(FieldParts& parts) {
                 for (int column = 0; column < grid.columns; ++column) {
                     const double x = fourier_frequency(column, grid.columns), y = fourier_frequency(row, grid.rows);
                     const std::complex<double> of_frequency = transfer.at(node, std::hypot(x, y) / grid.pitch);
-                    waves(column, row) *= of_frequency == 0.0 ? 0.0 : of_frequency / (of_cell(x) * of_cell(y));
+                    waves(column, row) *= of_frequency;
                 }
             }
         });

@@ -38,9 +38,9 @@ SampledSurface surface_of(const optics::Instrument& instrument, const optics::In
 struct FieldParts {
     SampledSurface surface;
     FringeTransfer transfer;
-    FringeFields fields;         // without the nodes' fields
-    double middle_height = 0;    // mm, which heights are counted from
-    glm::dvec2 tilt{0};          // slopes of the reference mirror
+    FringeFields fields;      // without the nodes' fields
+    double middle_height = 0; // mm, which heights are counted from
+    glm::dvec2 tilt{0};       // slopes of the reference mirror
 };
 
 // Throws InputError where a part of the instrument or the specimen has no meaning here. description: of the instrument.

@@ -16,7 +16,7 @@ namespace vkfv::fields {
 
 namespace {
 
-constexpr double most_beyond = 0.05;     // share of points beyond the model that a surface may have: edges of steps
+constexpr double most_beyond = 0.1;      // share of points beyond the model that a surface may have: edges of steps
 constexpr double worth_a_warning = 1e-4; // share
 constexpr double margin_limits = 8;      // resolution limits, 1 / cutoff, that the margin is wide
 
@@ -60,30 +60,42 @@ Grid<glm::dvec2> slopes_of(const SampledSurface& surface) {
     return slopes;
 }
 
+// An area so small that its mean height is that of its middle, for heights of points.
+specimen::PixelArea spot_at(glm::dvec2 middle, double pitch) {
+    constexpr double share = 1e-3; // of the pitch
+    return {.middle = middle, .along_row = glm::dvec2(share * pitch, 0), .along_column = glm::dvec2(0, share * pitch)};
+}
+
 // A cell holds an edge where its mean height is not that of its middle.
 template <class Place>
 void find_edges(const specimen::Specimen& specimen, const PixelGrid& points, const Place& place, double wavelength,
                 SampledSurface& surface) {
     constexpr double flat = 1.0 / 200; // of the wavelength: a phase of 0.06
     constexpr int side = 8;
-    const auto means = specimen::truth(specimen, points.columns, points.rows, points.x0, points.y0, points.pitch_x,
-                                       points.pitch_y).height;
+    const auto means =
+        specimen::truth(specimen, points.columns, points.rows, points.x0, points.y0, points.pitch_x, points.pitch_y)
+            .height;
     for (std::size_t k = 0; k < means.values.size(); ++k) {
         if (std::abs(means.values[k] - surface.heights.values[k]) > flat * wavelength) {
             surface.edges.push_back(k);
+        } else if (std::isfinite(means.values[k])) {
+            surface.heights.values[k] = means.values[k]; // of a curved cell
         }
     }
     if (surface.edges.empty()) {
         return;
     }
-    const PixelGrid list{.columns = SampledSurface::parts_of_edge, .rows = static_cast<int>(surface.edges.size()),
-                         .x0 = 0, .y0 = 0, .pitch_x = 1, .pitch_y = 1};
+    const PixelGrid list{.columns = SampledSurface::parts_of_edge,
+                         .rows = static_cast<int>(surface.edges.size()),
+                         .x0 = 0,
+                         .y0 = 0,
+                         .pitch_x = 1,
+                         .pitch_y = 1};
     surface.edge_heights =
         specimen::truth(specimen, list, [&](int part, int edge) {
             const auto at = static_cast<int>(surface.edges[static_cast<std::size_t>(edge)]);
             const glm::dvec2 within((part % side + 0.5) / side - 0.5, (part / side + 0.5) / side - 0.5);
-            return specimen::PixelArea{.middle = place(at % points.columns, at / points.columns) +
-                                                 points.pitch_x * within};
+            return spot_at(place(at % points.columns, at / points.columns) + points.pitch_x * within, points.pitch_x);
         }).height.values;
     std::ranges::replace_if(
         surface.edge_heights, [](double height) { return !std::isfinite(height); }, 0.0);
@@ -120,7 +132,8 @@ FieldGrid field_grid(ImageSize pixels, double pitch, double cutoff) {
     return grid;
 }
 
-SampledSurface sample_surface(const specimen::Specimen& specimen, const FieldGrid& grid, double wavelength_um, double aperture_sine) {
+SampledSurface sample_surface(const specimen::Specimen& specimen, const FieldGrid& grid, double wavelength_um,
+                              double aperture_sine) {
     if (std::holds_alternative<specimen::Mesh>(specimen.geometry)) {
         throw InputError({.where = {},
                           .key = "specimen.kind",
@@ -132,16 +145,14 @@ SampledSurface sample_surface(const specimen::Specimen& specimen, const FieldGri
     SampledSurface surface{.grid = grid};
     const double x0 = -(grid.margin_x + 0.5 * (grid.pixels.columns * grid.parts - 1)) * grid.pitch;
     const double y0 = -(grid.margin_y + 0.5 * (grid.pixels.rows * grid.parts - 1)) * grid.pitch;
-    const PixelGrid points{.columns = grid.columns,
-                           .rows = grid.rows,
-                           .x0 = x0,
-                           .y0 = y0,
-                           .pitch_x = grid.pitch,
-                           .pitch_y = grid.pitch};
+    const PixelGrid points{
+        .columns = grid.columns, .rows = grid.rows, .x0 = x0, .y0 = y0, .pitch_x = grid.pitch, .pitch_y = grid.pitch};
     const auto place = [&](int column, int row) { return glm::dvec2(x0 + column * grid.pitch, y0 + row * grid.pitch); };
-    surface.heights = specimen::truth(specimen, points, [&](int column, int row) { // of points, not areas
-                          return specimen::PixelArea{.middle = place(column, row)};
-                      }).height;
+    surface.heights = specimen::truth(specimen, points,
+                                      [&](int column, int row) { // of points, not areas
+                                          return spot_at(place(column, row), grid.pitch);
+                                      })
+                          .height;
     find_edges(specimen, points, place, wavelength_um * mm_per_um, surface);
     surface.amplitude = Grid<double>(grid.columns, grid.rows, amplitude);
     surface.lowest = 1e300;
@@ -165,8 +176,8 @@ SampledSurface sample_surface(const specimen::Specimen& specimen, const FieldGri
     }
     surface.slopes = slopes_of(surface);
     const double wavelength = wavelength_um * mm_per_um;
-    const double most_step = wavelength / 4;                                      // 2 k times it is pi
-    const double most_bend = grid.pitch * grid.pitch / wavelength;                // second difference of that radius
+    const double most_step = wavelength / 4;                       // 2 k times it is pi
+    const double most_bend = grid.pitch * grid.pitch / wavelength; // second difference of that radius
     const double horizon = std::sqrt(1 - aperture_sine * aperture_sine) / aperture_sine; // rise that hides the last ray
     std::size_t steep = 0, sharp = 0, shadowed = 0;
     for (int row = 1; row + 1 < grid.rows; ++row) {
@@ -176,10 +187,10 @@ SampledSurface sample_surface(const specimen::Specimen& specimen, const FieldGri
             }
             const auto& h = surface.heights;
             const double here = h(column, row);
-            const double rise = std::max({h(column + 1, row) - here, h(column - 1, row) - here, h(column, row + 1) - here,
-                                          h(column, row - 1) - here});
-            const double fall = std::max({here - h(column + 1, row), here - h(column - 1, row), here - h(column, row + 1),
-                                          here - h(column, row - 1)});
+            const double rise = std::max({h(column + 1, row) - here, h(column - 1, row) - here,
+                                          h(column, row + 1) - here, h(column, row - 1) - here});
+            const double fall = std::max({here - h(column + 1, row), here - h(column - 1, row),
+                                          here - h(column, row + 1), here - h(column, row - 1)});
             const double bend = std::max(std::abs(h(column + 1, row) - 2 * here + h(column - 1, row)),
                                          std::abs(h(column, row + 1) - 2 * here + h(column, row - 1)));
             steep += std::max(rise, fall) > most_step ? 1 : 0;

@@ -19,7 +19,8 @@ namespace vkfv::fields {
 struct FieldGrid {
     ImageSize pixels;
     int parts = 1;
-    int margin_x = 0, margin_y = 0; // points on either side of the pixels; where lengths are odd, the first side has less
+    int margin_x = 0,
+        margin_y = 0; // points on either side of the pixels; where lengths are odd, the first side has less
     int columns = 0, rows = 0;
     double pitch = 0; // mm
 };
@@ -30,8 +31,8 @@ FieldGrid field_grid(ImageSize pixels, double pitch, double cutoff);
 
 struct SampledSurface {
     FieldGrid grid;
-    Grid<double> heights{};   // mm; 0 where there is none
-    Grid<double> amplitude{}; // of reflection; 0 beside the specimen
+    Grid<double> heights{};    // mm, the mean over the cell, of an edge that in its middle; 0 where there is none
+    Grid<double> amplitude{};  // of reflection; 0 beside the specimen
     Grid<glm::dvec2> slopes{}; // within the point's cell
     // Points in whose cells the surface is no plane, as at the edge of a step, and the heights there at places that
     // divide the cell evenly: parts_of_edge for each point, one after the other.
@@ -50,7 +51,8 @@ void reflect(const SampledSurface& surface, double wave_number, double zero, Gri
 
 // Samples the specimen where the pixels look. Throws InputError, by the key, for a specimen without heights (a mesh), a
 // pattern or a material that is no mirror, and for surfaces beyond the limits of Kirchhoff's integral.
-SampledSurface sample_surface(const specimen::Specimen& specimen, const FieldGrid& grid, double wavelength_um, double aperture_sine);
+SampledSurface sample_surface(const specimen::Specimen& specimen, const FieldGrid& grid, double wavelength_um,
+                              double aperture_sine);
 
 std::vector<Warning> warnings_of(const SampledSurface& surface);
 

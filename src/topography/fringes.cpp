@@ -18,8 +18,9 @@ namespace vkfv::topography {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double dark_share = 0.01;    // of the stack's mean brightness
-constexpr double least_over_noise = 6; // amplitude over its standard deviation: 1e-8 of the points pass by chance
+constexpr double dark_share = 0.01;       // of the stack's mean brightness
+constexpr double least_modulation = 1e-4; // of the brightness: images in single precision have a noise of 1e-7
+constexpr double least_over_noise = 6;    // amplitude over its standard deviation: 1e-8 of the points pass by chance
 
 double wrapped(double phase) {
     return phase - 2 * pi * std::round(phase / (2 * pi));
@@ -86,12 +87,25 @@ FringeFit FringeBandTransform::fit(const std::vector<double>& signal, double fir
     fit.image = static_cast<int>(top - height.begin());
     fit.amplitude = *top;
     fit.at = first + fit.image * step_;
-    double weights = 0, energy = 0;
+    double energy = 0, highest = 0;
+    std::vector<double> squares; // of the bins' moduli
     for (std::size_t bin = 0; bin < wave_numbers_.size(); ++bin) {
-        const double weight = std::norm(std::complex(spectrum.real[bin], spectrum.imaginary[bin]));
-        weights += weight;
-        fit.mean_wave_number += weight * wave_numbers_[bin];
-        energy += 2 * weight / images_;
+        squares.push_back(std::norm(std::complex(spectrum.real[bin], spectrum.imaginary[bin])));
+        highest = std::max(highest, squares.back());
+        energy += 2 * squares.back() / images_;
+    }
+    const double free = images_ - 1.0 - 2.0 * bins();
+    fit.noise = free > 0 ? std::sqrt(std::max(0.0, spectrum.energy - energy) / free) : 0;
+    const double of_bin = fit.noise * fit.noise * images_ / 2; // variance of the real part of a bin
+    // Bins whose phase is nearly that of noise would add more of it than their weight says.
+    constexpr double least_share = 0.01, least_over_noise_of_bin = 10;
+    const double least = std::max(least_share * highest, least_over_noise_of_bin * 2 * of_bin);
+    std::vector<double> bin_weights;
+    double weights = 0;
+    for (std::size_t bin = 0; bin < wave_numbers_.size(); ++bin) {
+        bin_weights.push_back(squares[bin] >= std::min(least, highest) ? squares[bin] : 0);
+        weights += bin_weights.back();
+        fit.mean_wave_number += bin_weights.back() * wave_numbers_[bin];
     }
     fit.mean_wave_number /= weights;
     // The phases near the highest envelope lie on a line through nearly the phase of their sum, so that they need no
@@ -101,13 +115,13 @@ FringeFit FringeBandTransform::fit(const std::vector<double>& signal, double fir
     for (std::size_t bin = 0; bin < wave_numbers_.size(); ++bin) {
         turned.push_back(std::complex(spectrum.real[bin], spectrum.imaginary[bin]) *
                          std::polar(1.0, wave_numbers_[bin] * step_ * fit.image));
-        sum += turned.back();
+        sum += bin_weights[bin] > 0 ? turned.back() : 0;
     }
     const double middle = std::arg(sum);
     double offset = 0, moment = 0, spread = 0;
     std::vector<double> phases;
     for (std::size_t bin = 0; bin < wave_numbers_.size(); ++bin) {
-        const double weight = std::norm(turned[bin]), apart = wave_numbers_[bin] - fit.mean_wave_number;
+        const double weight = bin_weights[bin], apart = wave_numbers_[bin] - fit.mean_wave_number;
         phases.push_back(std::arg(turned[bin] * std::polar(1.0, -middle)));
         offset += weight * phases.back();
         moment += weight * apart * phases.back();
@@ -119,14 +133,11 @@ FringeFit FringeBandTransform::fit(const std::vector<double>& signal, double fir
     double residual = 0;
     for (std::size_t bin = 0; bin < wave_numbers_.size(); ++bin) {
         const double apart = wave_numbers_[bin] - fit.mean_wave_number;
-        residual += std::norm(turned[bin]) * std::pow(phases[bin] - offset - slope * apart, 2);
+        residual += bin_weights[bin] * std::pow(phases[bin] - offset - slope * apart, 2);
     }
     fit.residual = std::sqrt(residual / weights);
     fit.phase = wrapped(middle + offset);
     fit.envelope_height = fit.at - slope;
-    const double free = images_ - 1.0 - 2.0 * bins();
-    fit.noise = free > 0 ? std::sqrt(std::max(0.0, spectrum.energy - energy) / free) : 0;
-    const double of_bin = fit.noise * fit.noise * images_ / 2; // variance of the real part of a bin
     fit.slope_deviation = std::sqrt(of_bin / spread);
     fit.phase_deviation = std::sqrt(of_bin / weights);
     return fit;
@@ -168,7 +179,8 @@ Topography FringeEvaluator::finish(double x0, double y0, double pitch) {
     }
     const int columns = images_.front().columns, rows = images_.front().rows;
     Topography result;
-    result.height = {.height = Grid<double>(columns, rows, nothing), .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch};
+    result.height = {
+        .height = Grid<double>(columns, rows, nothing), .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch};
     result.contrast = result.fit_residual = Grid<double>(columns, rows);
     result.height_noise = result.height_uncertainty = result.height.height;
     result.peaks = Grid<std::uint16_t>(columns, rows, 1);
@@ -185,8 +197,7 @@ Topography FringeEvaluator::finish(double x0, double y0, double pitch) {
     parallel_rows(columns, rows, [&](int begin, int end) {
         for (std::size_t pixel = fits.index(0, begin); pixel < fits.index(0, end); ++pixel) {
             const auto signal = signal_of(pixel);
-            brightness.values[pixel] =
-                static_cast<float>(std::accumulate(signal.begin(), signal.end(), 0.0) / images);
+            brightness.values[pixel] = static_cast<float>(std::accumulate(signal.begin(), signal.end(), 0.0) / images);
             fits.values[pixel] = band.fit(signal, z_.front());
         }
     });
@@ -202,14 +213,14 @@ Topography FringeEvaluator::finish(double x0, double y0, double pitch) {
         result.fit_residual.values[pixel] = std::min(1.0, fit.residual);
         if (!(static_cast<double>(brightness.values[pixel]) > dark_share * mean)) {
             state = PointState::dark;
-        } else if (!(fit.amplitude > least_over_noise * noise) || !(fit.amplitude > 0)) {
+        } else if (!(fit.amplitude > least_over_noise * noise) ||
+                   !(fit.amplitude > least_modulation * static_cast<double>(brightness.values[pixel]))) {
             state = PointState::by_chance;
         } else if (fit.envelope_height < z_.front() || fit.envelope_height > z_.back() || fit.image == 0 ||
                    fit.image == images - 1) {
             state = PointState::no_peak;
         } else {
-            gaps += fit.amplitude *
-                    std::polar(1.0, fit.phase - fit.mean_wave_number * (fit.at - fit.envelope_height));
+            gaps += fit.amplitude * std::polar(1.0, fit.phase - fit.mean_wave_number * (fit.at - fit.envelope_height));
         }
     }
     const double gap = std::arg(gaps);
@@ -221,8 +232,8 @@ Topography FringeEvaluator::finish(double x0, double y0, double pitch) {
         }
         double height = fit.envelope_height, noise = fit.slope_deviation;
         double bend = fit.residual / fit.wave_number_deviation;
-        const double apart = wrapped(fit.phase - fit.mean_wave_number * (fit.at - fit.envelope_height) - gap) /
-                             fit.mean_wave_number;
+        const double apart =
+            wrapped(fit.phase - fit.mean_wave_number * (fit.at - fit.envelope_height) - gap) / fit.mean_wave_number;
         const double disagreement = std::sqrt(std::max(0.0, apart * apart - noise * noise));
         if (by_phase) {
             height -= apart;

@@ -1,12 +1,12 @@
 // Heights by the fringes of an interferometer whose focal plane is scanned.
 //
-// Each pixel's images are the samples of a signal, background + 2 Re sum over K of F(K) exp(i K (z - h)), in equal steps
-// of z. Its Fourier transform is taken at the multiples of one over the length of the scan that lie in the band of
-// fringes. About the image where the envelope, the modulus of the sum over the band, is highest, a line is fitted to the
-// phase over K with the weights |F|^2, the best ones for noise that is the same in all images (P. de Groot and L. Deck,
-// "Surface profiling by analysis of white-light interferograms in the spatial frequency domain", J. Mod. Opt. 42, 389,
-// 1995). The slope tells the envelope's height. The phase at the mean K, less its mean difference from the envelope over
-// the field, tells the height within a fringe, whose order is the one nearest to the envelope's height.
+// Each pixel's images are the samples of a signal, background + 2 Re sum over K of F(K) exp(i K (z - h)), in equal
+// steps of z. Its Fourier transform is taken at the multiples of one over the length of the scan that lie in the band
+// of fringes. About the image where the envelope, the modulus of the sum over the band, is highest, a line is fitted to
+// the phase over K with the weights |F|^2, the best ones for noise that is the same in all images (P. de Groot and L.
+// Deck, "Surface profiling by analysis of white-light interferograms in the spatial frequency domain", J. Mod. Opt. 42,
+// 389, 1995). The slope tells the envelope's height. The phase at the mean K, less its mean difference from the
+// envelope over the field, tells the height within a fringe, whose order is the one nearest to the envelope's height.
 //
 // The uncertainty of a height is the noise's, what the phases' distance from the line may hide, and by how much more
 // than by noise envelope and phase disagree: beside edges, and where slopes or dispersion change the fringes, they do.
@@ -29,12 +29,12 @@ struct FringeFit {
     double at = 0;              // height of the image with the highest envelope
     double mean_wave_number = 0;
     double wave_number_deviation = 0; // standard deviation of K, weighted
-    double slope_deviation = 0; // standard deviations by noise: of envelope_height, and of `phase`
+    double slope_deviation = 0;       // standard deviations by noise: of envelope_height, and of `phase`
     double phase_deviation = 0;
-    double amplitude = 0;  // of the envelope's maximum, in the images' unit
-    double noise = 0;      // standard deviation of an image's value, by what lies outside of the band
-    double residual = 0;   // root mean square of the phase's distance from the line, weighted, rad
-    int image = 0;         // of the highest envelope
+    double amplitude = 0; // of the envelope's maximum, in the images' unit
+    double noise = 0;     // standard deviation of an image's value, by what lies outside of the band
+    double residual = 0;  // root mean square of the phase's distance from the line, weighted, rad
+    int image = 0;        // of the highest envelope
 };
 
 // The transform of signals of so many images in a band, prepared once for all pixels.

@@ -19,8 +19,7 @@ const double wave_number = 2 * pi / from_um(wavelength_um);
 
 fields::FringeTransfer transfer_of(double aperture, double fill = 1, const fields::ReferenceArm& arm = {},
                                    double half_range_um = 2) {
-    const auto description =
-        test::interferometer(aperture, 0.25, 32, 32, optics::Spectrum::line(wavelength_um));
+    const auto description = test::interferometer(aperture, 0.25, 32, 32, optics::Spectrum::line(wavelength_um));
     const auto instrument = optics::assemble(description);
     const auto wavefronts = optics::wavefronts_of(instrument, optics::spectral_nodes(instrument));
     return {wavefronts, arm, fill, 0, from_um(half_range_um), wavelength_um};
@@ -34,8 +33,8 @@ std::complex<double> signal(const fields::FringeTransfer& transfer, double heigh
     return sum;
 }
 
-// The image of a weak wave of heights over the heights, at a frequency in units of NA / lambda; `weigh`: the phase that a
-// wave number makes of a height, over 2 k.
+// The image of a weak wave of heights over the heights, at a frequency in units of NA / lambda; `weigh`: the phase that
+// a wave number makes of a height, over 2 k.
 template <class Weigh>
 double weak_transfer(const fields::FringeTransfer& transfer, double aperture, double frequency, const Weigh& weigh) {
     std::complex<double> wave = 0, level = 0;
@@ -156,8 +155,8 @@ TEST(FringeTransfer, GlassInOneArmLeavesItsDispersion) {
     const double group = index(0.55) - 0.55 * (index(0.5501) - index(0.5499)) / 2e-4;
     std::complex<double> expected = 0;
     for (const double um : {0.5, 0.6}) {
-        const double phase = 2 * from_um(thickness_um) *
-                             (k(um) * index(um) - k(0.55) * index(0.55) - group * (k(um) - k(0.55)));
+        const double phase =
+            2 * from_um(thickness_um) * (k(um) * index(um) - k(0.55) * index(0.55) - group * (k(um) - k(0.55)));
         expected += 0.5 * std::polar(1.0, -phase);
     }
     EXPECT_LT(std::abs(signal(transfer, 0) - expected), 0.01);

@@ -33,11 +33,18 @@ std::vector<double> periods_of(const Conditions& conditions) {
 }
 
 int azimuths_of(const Conditions& conditions) {
+    if (conditions.fringes()) {
+        return 1; // a turned height map is a mesh, of which fields are not made; and the pupil is round
+    }
     return conditions.small ? 2 : 8;
 }
 
 double amplitude_of(const Conditions& conditions) {
-    constexpr double share = 0.1; // larger ones make the response non-linear
+    constexpr double share = 0.1;         // larger ones make the response non-linear
+    constexpr double fringe_share = 0.01; // of the wavelength, for the same reason
+    if (conditions.fringes()) {
+        return fringe_share * conditions.fringe_wavelength;
+    }
     return share * conditions.curve_deviation;
 }
 
@@ -66,6 +73,9 @@ std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>
                             .specimen = sinusoid_standard(conditions, amplitude_of(conditions), period, print, angle),
                             .overrides = repetition(conditions, static_cast<int>(list.size()))});
         }
+    }
+    if (conditions.fringes()) {
+        return list; // a star is a mesh
     }
     list.push_back({.name = "star",
                     .specimen = standard_of(conditions, "star",
@@ -147,15 +157,18 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
         table.rows.push_back({period * um_per_mm, period / conditions.pitch, ratio.mean, ratio.standard_error,
                               static_cast<double>(ratios.size())});
     }
-    const dimensions::Star star{.frame = {},
-                                .petals = petals_of(conditions),
-                                .radius = star_radius(conditions),
-                                .height = 2 * amplitude_of(conditions)};
-    auto rings = dimensions::star_transfer(results.back().heights, star);
-    const auto truth = dimensions::star_transfer(results.back().truth, star);
-    for (std::size_t k = 0; k < rings.size(); ++k) {
-        rings[k].ratio /= truth[k].ratio; // the pixels' own mean is not the instrument's
-        rings[k].standard_error /= truth[k].ratio;
+    std::vector<dimensions::Transfer> rings;
+    if (!conditions.fringes()) {
+        const dimensions::Star star{.frame = {},
+                                    .petals = petals_of(conditions),
+                                    .radius = star_radius(conditions),
+                                    .height = 2 * amplitude_of(conditions)};
+        rings = dimensions::star_transfer(results.back().heights, star);
+        const auto truth = dimensions::star_transfer(results.back().truth, star);
+        for (std::size_t k = 0; k < rings.size(); ++k) {
+            rings[k].ratio /= truth[k].ratio; // the pixels' own mean is not the instrument's
+            rings[k].standard_error /= truth[k].ratio;
+        }
     }
     const auto add = [&](const char* key, const char* title, const std::vector<dimensions::Transfer>& transfers) {
         const auto period = period_of_half(transfers);
@@ -171,7 +184,9 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
         }
     };
     add("D_LIM_um", "D_LIM, period of transfer 0.5 by sinusoids", sinusoids);
-    add("D_LIM_by_star_um", "period of transfer 0.5 by the star", rings);
+    if (!conditions.fringes()) {
+        add("D_LIM_by_star_um", "period of transfer 0.5 by the star", rings);
+    }
     const auto curve = [](const char* name, const std::vector<dimensions::Transfer>& transfers) {
         report::Curve curve{.name = name, .points = {}, .spreads = {}, .markers = true};
         for (const auto& one : transfers) {
@@ -182,12 +197,16 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
     findings.charts.push_back({.title = "Instrument transfer function",
                                .x_label = "period / um",
                                .y_label = "measured over true amplitude",
-                               .curves = {curve("sinusoids", sinusoids), curve("star", rings)},
+                               .curves = conditions.fringes()
+                                             ? std::vector{curve("sinusoids", sinusoids)}
+                                             : std::vector{curve("sinusoids", sinusoids), curve("star", rings)},
                                .x_decades = true});
     findings.tables.push_back(std::move(table));
-    findings.remarks.push_back(fmt::format("The amplitude of the sinusoids is {} µm, a tenth of the standard deviation "
-                                           "of a focus curve: the transfer of larger ones differs.",
-                                           um(amplitude_of(conditions))));
+    findings.remarks.push_back(fmt::format(
+        "The amplitude of the sinusoids is {} µm, {}: the transfer of larger ones "
+        "differs.",
+        um(amplitude_of(conditions)),
+        conditions.fringes() ? "a hundredth of the wavelength" : "a tenth of the standard deviation of a focus curve"));
     return findings;
 }
 
