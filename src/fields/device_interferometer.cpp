@@ -187,10 +187,14 @@ class FrameGroup {
     }
     // The pixels of an image, when it is there.
     std::span<const float> values(std::size_t frame) {
+        const std::lock_guard lock(waiting_); // images of a group may be asked for by several threads
         commands_->wait();
         return images_->values<float>(frames_.pixels, frame * frames_.pixels * sizeof(float));
     }
-    double seconds_of_frame() const { return commands_->seconds().back() / static_cast<double>(of_frames_.size()); }
+    double seconds_of_frame() {
+        const std::lock_guard lock(waiting_);
+        return commands_->seconds().back() / static_cast<double>(of_frames_.size());
+    }
 
   private:
     const vulkan::Device& device_;
@@ -200,6 +204,7 @@ class FrameGroup {
     vulkan::Buffer phases_;
     std::vector<std::vector<std::complex<float>>> of_frames_;
     std::optional<vulkan::Commands> commands_;
+    std::mutex waiting_;
 };
 
 class DeviceInterferometer final : public trace::Tracer {

@@ -1,8 +1,8 @@
 #include "measurement/instrument/instrument_figures.hpp"
 
 #include "core/mathematics/units.hpp"
-#include "fields/interferometer.hpp"
 #include "core/threads/threads.hpp"
+#include "fields/interferometer.hpp"
 #include "measurement/image/camera_report.hpp"
 #include "measurement/judgement/expectation.hpp"
 #include "measurement/judgement/plan_warnings.hpp"

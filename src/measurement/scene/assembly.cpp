@@ -183,9 +183,9 @@ topography::TopographyOptions evaluation_options(const Configuration& configurat
                                                  const optics::Instrument& instrument) {
     auto options = configuration.topography;
     if (configuration.reference_arm) {
-        const auto band = fields::fringe_band(configuration.instrument.spectrum,
-                                              instrument.first_order.numerical_aperture,
-                                              instrument.first_order.object_index);
+        const auto band =
+            fields::fringe_band(configuration.instrument.spectrum, instrument.first_order.numerical_aperture,
+                                instrument.first_order.object_index);
         options.least_wave_number = band.least;
         options.most_wave_number = band.most;
         options.smoothing_steps = 0;
