@@ -116,7 +116,7 @@ class StackEvaluation {
   private:
     void reconstruct(double x0, double y0, double pitch, const KnownErrors& errors);
 
-    topography::StackEvaluator evaluator_;                // by focus
+    topography::StackEvaluator evaluator_;               // by focus
     std::optional<topography::FringeEvaluator> fringes_; // by fringes, instead
     std::optional<optics::Diffraction> diffraction_;
     std::unique_ptr<StackEvaluation> diffracted_;

@@ -128,9 +128,8 @@ double exposure_time(const Configuration& configuration, const optics::Instrumen
                                                        : probe_heights(focal_heights);
     auto few_rays = configuration.trace;
     few_rays.rays = std::clamp<std::uint64_t>(few_rays.rays / heights.size(), 1, most_probe_rays);
-    const auto tracer = configuration.reference_arm
-                            ? make_tracer(devices.first(), configuration, instrument, specimen)
-                            : devices.first().make_tracer(instrument, specimen, few_rays);
+    const auto tracer = configuration.reference_arm ? make_tracer(devices.first(), configuration, instrument, specimen)
+                                                    : devices.first().make_tracer(instrument, specimen, few_rays);
     const auto diffraction = make_diffraction(configuration, instrument);
     double brightest = 0;
     for (std::size_t k = 0; k < heights.size(); ++k) {
