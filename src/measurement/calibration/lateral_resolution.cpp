@@ -22,8 +22,10 @@ double unit_of(const Conditions& conditions) {
 }
 
 std::vector<double> periods_of(const Conditions& conditions) {
-    const std::vector<double> units =
-        conditions.small ? std::vector<double>{40, 20, 12, 8} : std::vector<double>{40, 28, 20, 14, 10, 8, 6};
+    // Fringes have no window, so that shorter waves are seen.
+    const std::vector<double> units = conditions.fringes() ? std::vector<double>{40, 20, 12, 8, 6, 5, 4}
+                                      : conditions.small   ? std::vector<double>{40, 20, 12, 8}
+                                                           : std::vector<double>{40, 28, 20, 14, 10, 8, 6};
     std::vector<double> periods;
     periods.reserve(units.size());
     for (const double one : units) {
@@ -214,21 +216,20 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
 } // namespace
 
 Characteristic lateral_resolution() {
-    return {
-        .name = "D_LIM",
-        .title = "Lateral resolution",
-        .standard =
-            "Sinusoids (type PPS) of 6 to 40 pixels a period, or eighths of the optical resolution where pixels are "
-            "finer, in several directions, and a star (type ASG).",
-        .procedure =
-            "The transfer is the measured over the true amplitude, each by a least-squares fit, averaged "
-            "over the directions; its uncertainty is their scatter. D_LIM is the period at which it falls "
-            "to one half, linear in the frequency between the periods. On the star the transfer is found in rings.",
-        .equation = R"(\frac{A_{\mathrm{measured}}(D_{LIM})}{A_{\mathrm{true}}(D_{LIM})} = )"
-                    R"(\frac{1}{2})",
-        .lateral = true,
-        .trials = of_transfer::trials,
-        .evaluate = of_transfer::evaluate};
+    return {.name = "D_LIM",
+            .title = "Lateral resolution",
+            .standard = "Sinusoids (type PPS) of 6 (of an interferometer 4) to 40 pixels a period, or eighths of the "
+                        "optical resolution where pixels are "
+                        "finer, in several directions, and a star (type ASG).",
+            .procedure =
+                "The transfer is the measured over the true amplitude, each by a least-squares fit, averaged "
+                "over the directions; its uncertainty is their scatter. D_LIM is the period at which it falls "
+                "to one half, linear in the frequency between the periods. On the star the transfer is found in rings.",
+            .equation = R"(\frac{A_{\mathrm{measured}}(D_{LIM})}{A_{\mathrm{true}}(D_{LIM})} = )"
+                        R"(\frac{1}{2})",
+            .lateral = true,
+            .trials = of_transfer::trials,
+            .evaluate = of_transfer::evaluate};
 }
 
 } // namespace vkfv::measurement
