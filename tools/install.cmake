@@ -22,7 +22,7 @@ install(EXPORT vkfv NAMESPACE vkfv:: FILE vkfvConfig.cmake DESTINATION ${CMAKE_I
 install(FILES ${PROJECT_BINARY_DIR}/vkfvConfigVersion.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vkfv)
 install(FILES ${PROJECT_BINARY_DIR}/vkfv.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(DIRECTORY src/library/include/vkfv DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-if(VKFV_PYTHON)
+if(VKFV_PYTHON_MODULE)
   install(TARGETS vkfv_core_module LIBRARY DESTINATION lib/python3/dist-packages/vkfv)
 endif()
 

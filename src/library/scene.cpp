@@ -169,13 +169,13 @@ Image Scene::image(double z_um) {
         if (index == positions.size()) { // the instrument's aim holds for the heights of its scan alone
             const auto specimen = measurement::make_specimen(configuration);
             const auto instrument = measurement::instrument_for(configuration, specimen, z);
-            const auto exposure = measurement::expose(configuration, state_->runs.devices_of(configuration), instrument,
-                                                      specimen, z);
+            const auto exposure =
+                measurement::expose(configuration, state_->runs.devices_of(configuration), instrument, specimen, z);
             return image_of(exposure.image, exposure.grid, z);
         }
         state_->runs.with_light(configuration, [&](const measurement::StackScene& scene, const trace::Tracer& tracer) {
-            result = image_of(tracer.expose(z, index),
-                              measurement::grid_of_image(scene.instrument, configuration, z), z);
+            result =
+                image_of(tracer.expose(z, index), measurement::grid_of_image(scene.instrument, configuration, z), z);
         });
         return result;
     });
@@ -242,8 +242,8 @@ Topography Scene::evaluate(const Stack& stack) {
                                measurement::reading_of(configuration, positions[k], static_cast<int>(k)));
             }
             measurement::KnownErrors errors{
-                .flat = measurement::read_flat(configuration, pixels,
-                                               measurement::height_pitch(instrument, configuration)),
+                .flat =
+                    measurement::read_flat(configuration, pixels, measurement::height_pitch(instrument, configuration)),
                 .design = optics::field_curvature(instrument.first_order)};
             if (!tracer.pupil_filters().empty()) {
                 errors.hidden_uncertainty =

@@ -51,9 +51,9 @@ class StackRuns {
     // continues.
     Traced trace(const Configuration& configuration, Progress& progress, const scan::ImageVisitor& visit);
 
-    // Does the work with the scene and the tracer of the configuration's light, which stay for the next work of the same
-    // light. It writes no files. The work is done again from its beginning where a device failed. Throws InputError,
-    // DeviceError, and what the work throws.
+    // Does the work with the scene and the tracer of the configuration's light, which stay for the next work of the
+    // same light. It writes no files. The work is done again from its beginning where a device failed. Throws
+    // InputError, DeviceError, and what the work throws.
     void with_light(const Configuration& configuration,
                     const std::function<void(const StackScene& scene, const trace::Tracer& tracer)>& work);
     int lights_made() const { return lights_made_; }

@@ -97,8 +97,7 @@ PYBIND11_MODULE(_core, module) {
             py::list problems;
             for (const auto& problem : error.problems()) {
                 problems.append(py::dict(py::arg("place") = problem.place, py::arg("key") = problem.key,
-                                         py::arg("found") = problem.found,
-                                         py::arg("expectation") = problem.expectation,
+                                         py::arg("found") = problem.found, py::arg("expectation") = problem.expectation,
                                          py::arg("remedy") = problem.remedy));
             }
             const py::tuple what = py::make_tuple(error.what(), causes[static_cast<int>(error.cause())], problems);
@@ -107,27 +106,34 @@ PYBIND11_MODULE(_core, module) {
     });
     py::class_<vkfv::Scene>(module, "Scene")
         .def(py::init<const std::string&>())
-        .def("set", [](vkfv::Scene& scene, const std::string& key,
-                       const std::string& value) { unlocked([&] { scene.set(key, value); return 0; }); })
+        .def("set",
+             [](vkfv::Scene& scene, const std::string& key, const std::string& value) {
+                 unlocked([&] {
+                     scene.set(key, value);
+                     return 0;
+                 });
+             })
         .def("positions_um", [](const vkfv::Scene& scene) { return unlocked([&] { return scene.positions_um(); }); })
         .def("configuration", [](const vkfv::Scene& scene) { return unlocked([&] { return scene.configuration(); }); })
         .def("lights_made", [](const vkfv::Scene& scene) { return unlocked([&] { return scene.lights_made(); }); })
-        .def("image", [](vkfv::Scene& scene, double z_um) {
-            return dictionary_of(unlocked([&] { return scene.image(z_um); }));
-        })
-        .def("stack", [](vkfv::Scene& scene, const std::optional<py::function>& progress) {
-            // An interrupt, or an exception of `progress`, ends the stack at the next image.
-            const auto told = [&](int done, int images) {
-                const py::gil_scoped_acquire locked;
-                if (PyErr_CheckSignals() != 0) {
-                    throw py::error_already_set();
-                }
-                if (progress) {
-                    (*progress)(done, images);
-                }
-            };
-            return list_of(unlocked([&] { return scene.stack(told); }));
-        }, py::arg("progress") = py::none())
+        .def("image",
+             [](vkfv::Scene& scene, double z_um) { return dictionary_of(unlocked([&] { return scene.image(z_um); })); })
+        .def(
+            "stack",
+            [](vkfv::Scene& scene, const std::optional<py::function>& progress) {
+                // An interrupt, or an exception of `progress`, ends the stack at the next image.
+                const auto told = [&](int done, int images) {
+                    const py::gil_scoped_acquire locked;
+                    if (PyErr_CheckSignals() != 0) {
+                        throw py::error_already_set();
+                    }
+                    if (progress) {
+                        (*progress)(done, images);
+                    }
+                };
+                return list_of(unlocked([&] { return scene.stack(told); }));
+            },
+            py::arg("progress") = py::none())
         .def("evaluate", [](vkfv::Scene& scene,
                             const std::vector<py::array_t<float, py::array::c_style | py::array::forcecast>>& images) {
             const auto stack = stack_of(images);

@@ -46,7 +46,7 @@ class Scene:
         try:
             from . import _core
         except ImportError as error:
-            raise ImportError("vkfv._core is not installed: build vkfv with -DVKFV_PYTHON=ON") from error
+            raise ImportError("vkfv._core is not installed: build vkfv with -DVKFV_PYTHON_MODULE=ON") from error
         self._core = _core
         self._file = os.fspath(config)
         self._scene = self._do(_core.Scene, self._file)
