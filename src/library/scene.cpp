@@ -14,12 +14,17 @@
 #include "scan/stack.hpp"
 #include "specimen/kinds.hpp"
 #include "vkfv/error.hpp"
+#include "vulkan/device.hpp"
 #include "vulkan/failure.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <deque>
 #include <filesystem>
 #include <future>
@@ -61,6 +66,31 @@ auto with_errors(const Work& work) {
     } catch (const std::bad_alloc&) {
         throw Error(Error::Cause::run, "the host has not enough memory. Choose fewer pixels or positions");
     }
+}
+
+std::once_flag prepared, at_exit;
+vulkan::DriverScope* drivers = nullptr;
+
+// Prepares the process: drivers stay open for the next scene, and messages go to standard error, unless the caller has
+// given spdlog a logger of its own.
+void prepare_process() {
+    std::call_once(prepared, [] {
+        drivers = new vulkan::DriverScope;
+        if (spdlog::default_logger()->name().empty()) {
+            auto logger = spdlog::stderr_color_mt("libvkfv");
+            logger->set_level(spdlog::level::warn);
+            spdlog::set_default_logger(std::move(logger));
+        }
+    });
+}
+
+// Does work on a device, and has the drivers closed when the process ends. They are closed before their own static
+// objects end, since what is registered last is done first, and the drivers are loaded during the first work.
+template <class Work>
+auto with_device(const Work& work) {
+    auto result = with_errors(work);
+    std::call_once(at_exit, [] { (void)std::atexit([] { delete drivers; }); });
+    return result;
 }
 
 // Light is what this library hands over; grey values are the command's alone.
@@ -122,6 +152,7 @@ struct Scene::State {
 };
 
 Scene::Scene(const std::string& file) : state_(std::make_unique<State>()) {
+    prepare_process();
     state_->file = file;
     with_errors([&] { state_->configuration = load_configuration(file, {}, Needs::stack); });
 }
@@ -159,7 +190,7 @@ int Scene::lights_made() const {
 
 Image Scene::image(double z_um) {
     const std::scoped_lock lock(state_->one_at_a_time);
-    return with_errors([&] {
+    return with_device([&] {
         const Configuration& configuration = state_->configuration;
         refuse_camera(configuration);
         const double z = z_um / um_per_mm;
@@ -183,7 +214,7 @@ Image Scene::image(double z_um) {
 
 Stack Scene::stack(const ImageProgress& progress) {
     const std::scoped_lock lock(state_->one_at_a_time);
-    return with_errors([&] {
+    return with_device([&] {
         const Configuration& configuration = state_->configuration;
         refuse_camera(configuration);
         Stack stack;
@@ -212,7 +243,7 @@ Stack Scene::stack(const ImageProgress& progress) {
 
 Topography Scene::evaluate(const Stack& stack) {
     const std::scoped_lock lock(state_->one_at_a_time);
-    return with_errors([&] {
+    return with_device([&] {
         const Configuration& configuration = state_->configuration;
         refuse_camera(configuration);
         const auto positions = configuration.scan->positions();

@@ -17,6 +17,7 @@ using ImageProgress = std::function<void(int done, int images)>;
 // Every function throws Error alone, and what a caller's own function throws. A scene keeps its device, surface,
 // instrument and kernels, and makes again only what a changed key needs. Several threads may call one scene, which
 // then works for one after the other; several scenes work side by side.
+// Warnings go to standard error.
 class Scene {
   public:
     // file: a configuration of the command `vkfv stack`.
