@@ -16,6 +16,7 @@ install(DIRECTORY ${assets} DESTINATION ${CMAKE_INSTALL_DATADIR}/vkfv
 # What other programs need: the library, its headers, and its packages for CMake and pkg-config.
 include(CMakePackageConfigHelpers)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vkfvConfigVersion.cmake COMPATIBILITY SameMajorVersion)
+file(RELATIVE_PATH path_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(tools/vkfv.pc.in ${PROJECT_BINARY_DIR}/vkfv.pc @ONLY)
 install(TARGETS vkfv_shared EXPORT vkfv LIBRARY)
 install(EXPORT vkfv NAMESPACE vkfv:: FILE vkfvConfig.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vkfv)

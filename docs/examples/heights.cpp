@@ -20,7 +20,7 @@ int main(int count, char** arguments) {
         const vkfv::Topography topography = scene.evaluate(scene.stack());
         for (int row = topography.rows - 1; row >= 0; --row) {
             for (int column = 0; column < topography.columns; ++column) {
-                std::printf("%.9g ", topography.heights_um[std::size_t(row * topography.columns + column)]);
+                std::printf("%.17g ", topography.heights_um[std::size_t(row * topography.columns + column)]);
             }
             std::puts("");
         }
