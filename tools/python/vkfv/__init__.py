@@ -6,7 +6,7 @@
     stack.heights.sel(x=10, y=-5)      # um, at the pixel nearest to x = 10 um and y = -5 um
     stack.results["rms_deviation_um"]
 
-Everything is read from files; docs/python.md tells more.
+`vkfv.load` gives a scene in this process; all else is read from files. docs/python.md tells more.
 """
 
 from .array import Array
@@ -18,6 +18,7 @@ from .errors import DeviceError, Error, FolderInUse, InputError, RunError, RunWa
 from .fit import Fit
 from .focus import focus_curves
 from .program import find_program
+from .scene import Scene, Topography, load
 from .stack import PointState, Stack
 from .sweep import Sweep
 from .x3p import read_x3p
@@ -38,8 +39,10 @@ __all__ = [
     "PointState",
     "RunError",
     "RunWarning",
+    "Scene",
     "Stack",
     "Sweep",
+    "Topography",
     "budget",
     "calibrate",
     "capability",
@@ -49,6 +52,7 @@ __all__ = [
     "fit",
     "focus_curves",
     "image",
+    "load",
     "read_x3p",
     "run",
     "sweep",
