@@ -13,20 +13,6 @@ install(TARGETS vkfv_openimageio LIBRARY DESTINATION lib/vkfv)
 install(DIRECTORY ${assets} DESTINATION ${CMAKE_INSTALL_DATADIR}/vkfv
         PATTERN "*-out" EXCLUDE)
 
-# What other programs need: the library, its headers, and its packages for CMake and pkg-config.
-include(CMakePackageConfigHelpers)
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/vkfvConfigVersion.cmake COMPATIBILITY SameMajorVersion)
-file(RELATIVE_PATH path_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-configure_file(tools/vkfv.pc.in ${PROJECT_BINARY_DIR}/vkfv.pc @ONLY)
-install(TARGETS vkfv_shared EXPORT vkfv LIBRARY)
-install(EXPORT vkfv NAMESPACE vkfv:: FILE vkfvConfig.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vkfv)
-install(FILES ${PROJECT_BINARY_DIR}/vkfvConfigVersion.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vkfv)
-install(FILES ${PROJECT_BINARY_DIR}/vkfv.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-install(DIRECTORY src/library/include/vkfv DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-if(VKFV_PYTHON_MODULE)
-  install(TARGETS vkfv_core_module LIBRARY DESTINATION lib/python3/dist-packages/vkfv)
-endif()
-
 # Debian's Python looks for packages here.
 install(DIRECTORY tools/python/vkfv DESTINATION lib/python3/dist-packages PATTERN "__pycache__" EXCLUDE)
 

@@ -145,11 +145,8 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
         root.attempt("scan", [&] { read_scan(root, configuration); });
     }
     root.attempt("stage", [&] { read_stage(root, configuration); });
-    root.attempt("reference_arm", [&] { read_reference_arm(root, configuration); });
     root.attempt("trace", [&] { read_trace(root, configuration); });
-    if (!configuration.reference_arm) {
-        root.attempt("diffraction", [&] { read_diffraction(root, configuration); });
-    }
+    root.attempt("diffraction", [&] { read_diffraction(root, configuration); });
     root.attempt("source", [&] { require_one_spectrum(configuration); });
     root.attempt("topography", [&] { read_topography(root, configuration, needs); });
     root.attempt("output", [&] { read_output(root, configuration); });

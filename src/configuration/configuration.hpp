@@ -4,7 +4,6 @@
 
 #include "camera/camera.hpp"
 #include "core/keys/section.hpp"
-#include "fields/reference_arm.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "scan/plan.hpp"
 #include "scan/stage.hpp"
@@ -106,7 +105,6 @@ struct Configuration : ReadKeys {
     std::optional<std::uint32_t> noise_seed;     // camera.noise_seed; none: trace.seed
     bool estimator_is_chosen = false;            // trace.estimator is "auto": trace.estimator below is vkfv's choice
     std::optional<specimen::Description> specimen;
-    std::optional<fields::ReferenceArm> reference_arm; // none: no interferometer
     std::optional<scan::ScanPlan> scan;
     std::optional<scan::Stage> stage;
     trace::TraceOptions trace;

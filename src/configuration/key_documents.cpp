@@ -192,9 +192,9 @@ const std::vector<const KeyTable*>& key_tables() {
             &tube_lens_keys(),     &detector_keys(),    &mesh_element_keys(), &camera_keys()};
         const auto specimens = specimen_key_tables();
         all.insert(all.end(), specimens.begin(), specimens.end());
-        all.insert(all.end(), {&scan_keys(), &reference_arm_keys(), &stage_keys(), &trace_keys(), &topography_keys(),
-                               &diffraction_keys(), &output_keys(), &sweep_keys(), &sweep_parameter_keys(),
-                               &uncertainty_keys(), &uncertainty_correlation_keys()});
+        all.insert(all.end(),
+                   {&scan_keys(), &stage_keys(), &trace_keys(), &topography_keys(), &diffraction_keys(), &output_keys(),
+                    &sweep_keys(), &sweep_parameter_keys(), &uncertainty_keys(), &uncertainty_correlation_keys()});
         return all;
     }();
     return tables;

@@ -31,16 +31,6 @@ ChoiceKey<Value> named(std::string name, const std::vector<std::string>& names, 
     return without_influence(ChoiceKey<Value>(std::move(name), options, fallback, std::move(meaning)));
 }
 
-using Method = topography::HeightMethod;
-const ChoiceKey<Method> method = with_default(
-    Default::in_words("\"focus\", or \"phase\" with a [reference_arm]"),
-    without_influence(ChoiceKey<Method>(
-        "method",
-        {{Method::focus, "focus", "where texture is sharpest"},
-         {Method::envelope, "envelope", "the middle of the fringes, by the slope of their phase over the wave number"},
-         {Method::phase, "phase", "the phase of the fringes, in the order nearest to the envelope"}},
-        {}, "What of the images tells heights; fringes need a [reference_arm].")));
-
 constexpr int chosen_measure = -1;
 std::vector<ChoiceKey<int>::Option> measures() {
     std::vector<ChoiceKey<int>::Option> options = {
@@ -151,37 +141,6 @@ surface::Form read_form(const Section& section, const Configuration& configurati
     return *parsed;
 }
 
-// Reads the keys of heights by focus.
-void read_focus(const TomlTable& table, const Section& section, Configuration& configuration, Needs needs) {
-    auto& options = configuration.topography;
-    const int measure = section.choice(focus_measure);
-    options.focus_measure =
-        measure == chosen_measure ? std::nullopt : std::optional(static_cast<topography::FocusMeasure>(measure));
-    options.window_px = static_cast<int>(section.integer(window));
-    if (options.window_px % 2 == 0) {
-        section.fail(window, "an odd integer, so that the window has a central pixel",
-                     fmt::format("Choose {} or {}.", options.window_px - 1, options.window_px + 1));
-    }
-    const ImageSize& pixels = configuration.instrument.detector_pixels;
-    if (needs == Needs::stack && table.sound("detector") && options.window_px > std::min(pixels.columns, pixels.rows)) {
-        section.fail(
-            window,
-            fmt::format("an integer <= {}, the least of detector.pixels", std::min(pixels.columns, pixels.rows)),
-            "Choose a smaller window or more pixels.");
-    }
-    options.window_shape = section.choice(window_shape);
-    options.smoothing_steps = section.number_if_given(smoothing);
-    options.false_peak_rate = section.number(false_peak_rate);
-    options.most_rival = section.number(most_rival);
-    options.peak = section.choice(peak);
-    options.peak_range_steps = static_cast<int>(section.integer(peak_range));
-    options.least_contrast = section.number(least_contrast);
-    options.most_fit_residual = section.number(most_fit_residual);
-    options.most_peaks = static_cast<int>(section.integer(most_peaks));
-    options.place_by_texture = section.boolean(place_by_texture);
-    options.repair_outliers = section.boolean(repair_outliers);
-}
-
 enum class DiffractionModel { none, airy, file, waves };
 
 // The identity needs no model, since only waves have the key `cells`, which the identity has.
@@ -223,32 +182,16 @@ const NumberKey most_memory = of_kinds(
 } // namespace
 
 const KeyTable& topography_keys() {
-    static const KeyTable table{.path = "topography",
-                                .presence = KeyTable::Presence::optional,
-                                .meaning = "How heights are found in the images.",
-                                .subject = "a topography",
-                                .kind = "",
-                                .keys = {&method,
-                                         &focus_measure,
-                                         &window,
-                                         &window_shape,
-                                         &smoothing,
-                                         &false_peak_rate,
-                                         &most_rival,
-                                         &peak,
-                                         &peak_range,
-                                         &least_contrast,
-                                         &most_fit_residual,
-                                         &most_peaks,
-                                         &registration,
-                                         &place_by_texture,
-                                         &repair_outliers,
-                                         &evaluate_on,
-                                         &flatness_file,
-                                         &form,
-                                         &filter,
-                                         &s_filter,
-                                         &l_filter}};
+    static const KeyTable table{
+        .path = "topography",
+        .presence = KeyTable::Presence::optional,
+        .meaning = "How heights are found in the images.",
+        .subject = "a topography",
+        .kind = "",
+        .keys = {&focus_measure, &window,       &window_shape,     &smoothing,       &false_peak_rate,
+                 &most_rival,    &peak,         &peak_range,       &least_contrast,  &most_fit_residual,
+                 &most_peaks,    &registration, &place_by_texture, &repair_outliers, &evaluate_on,
+                 &flatness_file, &form,         &filter,           &s_filter,        &l_filter}};
     return table;
 }
 
@@ -267,23 +210,32 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     const TomlTable table = root.table_or_empty("topography");
     const Section section(table, topography_keys(), configuration);
     auto& options = configuration.topography;
-    const bool fringes = configuration.reference_arm.has_value();
-    options.method = section.has(method) ? section.choice(method) : fringes ? Method::phase : Method::focus;
-    if (!section.has(method)) {
-        section.record(method, toml_quoted(method.name_of(options.method)));
+    const int measure = section.choice(focus_measure);
+    options.focus_measure =
+        measure == chosen_measure ? std::nullopt : std::optional(static_cast<topography::FocusMeasure>(measure));
+    options.window_px = static_cast<int>(section.integer(window));
+    if (options.window_px % 2 == 0) {
+        section.fail(window, "an odd integer, so that the window has a central pixel",
+                     fmt::format("Choose {} or {}.", options.window_px - 1, options.window_px + 1));
     }
-    if (fringes == (options.method == Method::focus)) {
-        section.fail(method,
-                     fringes ? "\"envelope\" or \"phase\" with a [reference_arm]"
-                             : "\"focus\" without a [reference_arm]",
-                     fringes ? "Choose one of these: fringes hide the texture that focus is seen by."
-                             : "Choose it, or give a [reference_arm].");
+    const ImageSize& pixels = configuration.instrument.detector_pixels;
+    if (needs == Needs::stack && table.sound("detector") && options.window_px > std::min(pixels.columns, pixels.rows)) {
+        section.fail(
+            window,
+            fmt::format("an integer <= {}, the least of detector.pixels", std::min(pixels.columns, pixels.rows)),
+            "Choose a smaller window or more pixels.");
     }
-    if (fringes) {
-        options.repair_outliers = section.boolean(repair_outliers);
-    } else {
-        read_focus(table, section, configuration, needs);
-    }
+    options.window_shape = section.choice(window_shape);
+    options.smoothing_steps = section.number_if_given(smoothing);
+    options.false_peak_rate = section.number(false_peak_rate);
+    options.most_rival = section.number(most_rival);
+    options.peak = section.choice(peak);
+    options.peak_range_steps = static_cast<int>(section.integer(peak_range));
+    options.least_contrast = section.number(least_contrast);
+    options.most_fit_residual = section.number(most_fit_residual);
+    options.most_peaks = static_cast<int>(section.integer(most_peaks));
+    options.place_by_texture = section.boolean(place_by_texture);
+    options.repair_outliers = section.boolean(repair_outliers);
     configuration.registration = section.choice(registration);
     configuration.evaluate_on = section.choice(evaluate_on);
     // The word "none" lets --set remove a flat.

@@ -65,11 +65,16 @@ const KeyTable& trace_keys() {
     return table;
 }
 
-namespace {
-
-// Reads the keys of rays' paths.
-void read_paths(const TomlTable& table, const Section& section, Configuration& configuration) {
+void read_trace(const TomlTable& root, Configuration& configuration) {
+    const TomlTable table = root.table_or_empty("trace");
+    const Section section(table, trace_keys(), configuration);
     auto& trace = configuration.trace;
+    trace.rays = static_cast<std::uint64_t>(section.integer(rays));
+    trace.seed = static_cast<std::uint32_t>(section.integer(seed));
+    if (auto& camera = configuration.camera) {        // the camera's fixed patterns do not depend on trace.seed
+        constexpr std::uint32_t golden = 0x9E3779B9u; // keeps sums of small seeds apart
+        camera->noise_seed = camera->seed + golden * configuration.noise_seed.value_or(trace.seed);
+    }
     trace.max_bounces = static_cast<int>(section.integer(max_bounces));
     trace.nonsequential = section.choice(mode);
     if (!trace.nonsequential && !configuration.instrument.meshes.empty()) {
@@ -112,26 +117,6 @@ void read_paths(const TomlTable& table, const Section& section, Configuration& c
                      "Use \"auto\", \"bvh\" or \"ray-query\" with mode = \"nonsequential\".");
     }
     trace.batch = static_cast<std::uint64_t>(section.integer(batch));
-}
-
-} // namespace
-
-void read_trace(const TomlTable& root, Configuration& configuration) {
-    const TomlTable table = root.table_or_empty("trace");
-    const Section section(table, trace_keys(), configuration);
-    auto& trace = configuration.trace;
-    const bool fields = configuration.reference_arm.has_value(); // which have no rays
-    if (!fields) {
-        trace.rays = static_cast<std::uint64_t>(section.integer(rays));
-    }
-    trace.seed = static_cast<std::uint32_t>(section.integer(seed));
-    if (auto& camera = configuration.camera) {        // the camera's fixed patterns do not depend on trace.seed
-        constexpr std::uint32_t golden = 0x9E3779B9u; // keeps sums of small seeds apart
-        camera->noise_seed = camera->seed + golden * configuration.noise_seed.value_or(trace.seed);
-    }
-    if (!fields) {
-        read_paths(table, section, configuration);
-    }
     if (const auto selector = table.optional_string(device.name)) {
         trace.device = *selector;
         // Only the first device is recorded. The number of devices at work belongs to the run, and the results are

@@ -50,12 +50,7 @@ namespace vkfv::topography {
 
 inline constexpr double most_smoothing_steps = 100; // 1202 images in memory
 
-// What of the images tells heights: focus, or the fringes of an interferometer (fringes.hpp).
-enum class HeightMethod { focus, envelope, phase };
-
 struct TopographyOptions {
-    HeightMethod method = HeightMethod::focus;
-    double least_wave_number = 0, most_wave_number = 0; // rad/mm, between which fringes lie; not of focus
     // Without a value FocusProbes::settle() chooses; the evaluator needs a measure.
     std::optional<FocusMeasure> focus_measure = where_little_is_averaged;
     int window_px = 7;                           // odd, at least 3

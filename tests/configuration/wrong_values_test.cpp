@@ -23,7 +23,7 @@ const std::map<std::string, std::string> least = {
     {"tube_lens", "prescription = \"200mm\"\n"},
     {"detector", "size_mm = 0.16\npixels = 8\n"},
     {"specimen", "kind = \"plane\"\nsize_mm = 0.2\n"},
-    {"scan", "z_start_um = -2\nz_stop_um = 2\nz_step_um = 0.1\n"},
+    {"scan", "z_start_um = -2\nz_stop_um = 2\nz_step_um = 1\n"},
 };
 
 // The fewest lines of a table in which another stands.

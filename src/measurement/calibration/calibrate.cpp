@@ -26,18 +26,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The characteristics of an interferometer: the others have standards with a print, or are limits of focus.
-bool of_fringes(const Characteristic& characteristic) {
-    return characteristic.name == "N_M" || characteristic.name == "alpha_z" || characteristic.name == "D_LIM";
-}
-
-std::vector<const Characteristic*> chosen(const std::vector<std::string>& only, bool fringes) {
+std::vector<const Characteristic*> chosen(const std::vector<std::string>& only) {
     std::vector<const Characteristic*> list;
     std::vector<std::string> names;
     for (const Characteristic& one : characteristics()) {
-        if (fringes && !of_fringes(one)) {
-            continue;
-        }
         names.push_back(one.name);
         if (only.empty() || std::ranges::find(only, one.name) != only.end()) {
             list.push_back(&one);
@@ -69,8 +61,8 @@ struct Plan {
 } // namespace
 
 CalibrationResult calibrate(const CalibrationRequest& request, Progress& progress) {
+    const auto list = chosen(request.only);
     const Configuration base = load_configuration(request.file, request.overrides);
-    const auto list = chosen(request.only, base.reference_arm.has_value());
     const TestedInstrument vertical = tested_instrument(base, request.small ? TestedField::small : TestedField::whole);
     const TestedInstrument lateral = request.small ? tested_instrument(base, TestedField::small_lateral) : vertical;
     ResultFolder results(base.output_directory);

@@ -31,11 +31,7 @@ struct Conditions {
     bool camera = false;        // false: images are light without a camera's noise
     bool small = false;         // fewer repetitions and places
     std::uint32_t seed = 0;     // the first seed of repeated measurements
-    // Of an interferometer, whose standards are mirrors without texture, the wavelength; 0: heights are found by focus.
-    // Its "window" is a pixel, and its "focus curve" the envelope of the fringes.
-    double fringe_wavelength = 0;
 
-    bool fringes() const { return fringe_wavelength > 0; }
     double field() const { return pitch * std::min(pixels.columns, pixels.rows); }
     double longer_field() const { return pitch * std::max(pixels.columns, pixels.rows); }
     double middle() const { return lowest + 0.5 * range; }

@@ -22,10 +22,8 @@ double unit_of(const Conditions& conditions) {
 }
 
 std::vector<double> periods_of(const Conditions& conditions) {
-    // Fringes have no window, so that shorter waves are seen.
-    const std::vector<double> units = conditions.fringes() ? std::vector<double>{40, 20, 12, 8, 6, 5, 4}
-                                      : conditions.small   ? std::vector<double>{40, 20, 12, 8}
-                                                           : std::vector<double>{40, 28, 20, 14, 10, 8, 6};
+    const std::vector<double> units =
+        conditions.small ? std::vector<double>{40, 20, 12, 8} : std::vector<double>{40, 28, 20, 14, 10, 8, 6};
     std::vector<double> periods;
     periods.reserve(units.size());
     for (const double one : units) {
@@ -35,18 +33,11 @@ std::vector<double> periods_of(const Conditions& conditions) {
 }
 
 int azimuths_of(const Conditions& conditions) {
-    if (conditions.fringes()) {
-        return 1; // a turned height map is a mesh, of which fields are not made; and the pupil is round
-    }
     return conditions.small ? 2 : 8;
 }
 
 double amplitude_of(const Conditions& conditions) {
-    constexpr double share = 0.1;         // larger ones make the response non-linear
-    constexpr double fringe_share = 0.01; // of the wavelength, for the same reason
-    if (conditions.fringes()) {
-        return fringe_share * conditions.fringe_wavelength;
-    }
+    constexpr double share = 0.1; // larger ones make the response non-linear
     return share * conditions.curve_deviation;
 }
 
@@ -75,9 +66,6 @@ std::vector<Trial> trials(const Conditions& conditions, std::vector<std::string>
                             .specimen = sinusoid_standard(conditions, amplitude_of(conditions), period, print, angle),
                             .overrides = repetition(conditions, static_cast<int>(list.size()))});
         }
-    }
-    if (conditions.fringes()) {
-        return list; // a star is a mesh
     }
     list.push_back({.name = "star",
                     .specimen = standard_of(conditions, "star",
@@ -159,18 +147,15 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
         table.rows.push_back({period * um_per_mm, period / conditions.pitch, ratio.mean, ratio.standard_error,
                               static_cast<double>(ratios.size())});
     }
-    std::vector<dimensions::Transfer> rings;
-    if (!conditions.fringes()) {
-        const dimensions::Star star{.frame = {},
-                                    .petals = petals_of(conditions),
-                                    .radius = star_radius(conditions),
-                                    .height = 2 * amplitude_of(conditions)};
-        rings = dimensions::star_transfer(results.back().heights, star);
-        const auto truth = dimensions::star_transfer(results.back().truth, star);
-        for (std::size_t k = 0; k < rings.size(); ++k) {
-            rings[k].ratio /= truth[k].ratio; // the pixels' own mean is not the instrument's
-            rings[k].standard_error /= truth[k].ratio;
-        }
+    const dimensions::Star star{.frame = {},
+                                .petals = petals_of(conditions),
+                                .radius = star_radius(conditions),
+                                .height = 2 * amplitude_of(conditions)};
+    auto rings = dimensions::star_transfer(results.back().heights, star);
+    const auto truth = dimensions::star_transfer(results.back().truth, star);
+    for (std::size_t k = 0; k < rings.size(); ++k) {
+        rings[k].ratio /= truth[k].ratio; // the pixels' own mean is not the instrument's
+        rings[k].standard_error /= truth[k].ratio;
     }
     const auto add = [&](const char* key, const char* title, const std::vector<dimensions::Transfer>& transfers) {
         const auto period = period_of_half(transfers);
@@ -186,9 +171,7 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
         }
     };
     add("D_LIM_um", "D_LIM, period of transfer 0.5 by sinusoids", sinusoids);
-    if (!conditions.fringes()) {
-        add("D_LIM_by_star_um", "period of transfer 0.5 by the star", rings);
-    }
+    add("D_LIM_by_star_um", "period of transfer 0.5 by the star", rings);
     const auto curve = [](const char* name, const std::vector<dimensions::Transfer>& transfers) {
         report::Curve curve{.name = name, .points = {}, .spreads = {}, .markers = true};
         for (const auto& one : transfers) {
@@ -199,16 +182,12 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
     findings.charts.push_back({.title = "Instrument transfer function",
                                .x_label = "period / um",
                                .y_label = "measured over true amplitude",
-                               .curves = conditions.fringes()
-                                             ? std::vector{curve("sinusoids", sinusoids)}
-                                             : std::vector{curve("sinusoids", sinusoids), curve("star", rings)},
+                               .curves = {curve("sinusoids", sinusoids), curve("star", rings)},
                                .x_decades = true});
     findings.tables.push_back(std::move(table));
-    findings.remarks.push_back(fmt::format(
-        "The amplitude of the sinusoids is {} µm, {}: the transfer of larger ones "
-        "differs.",
-        um(amplitude_of(conditions)),
-        conditions.fringes() ? "a hundredth of the wavelength" : "a tenth of the standard deviation of a focus curve"));
+    findings.remarks.push_back(fmt::format("The amplitude of the sinusoids is {} µm, a tenth of the standard deviation "
+                                           "of a focus curve: the transfer of larger ones differs.",
+                                           um(amplitude_of(conditions))));
     return findings;
 }
 
@@ -216,20 +195,21 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
 } // namespace
 
 Characteristic lateral_resolution() {
-    return {.name = "D_LIM",
-            .title = "Lateral resolution",
-            .standard = "Sinusoids (type PPS) of 6 (of an interferometer 4) to 40 pixels a period, or eighths of the "
-                        "optical resolution where pixels are "
-                        "finer, in several directions, and a star (type ASG).",
-            .procedure =
-                "The transfer is the measured over the true amplitude, each by a least-squares fit, averaged "
-                "over the directions; its uncertainty is their scatter. D_LIM is the period at which it falls "
-                "to one half, linear in the frequency between the periods. On the star the transfer is found in rings.",
-            .equation = R"(\frac{A_{\mathrm{measured}}(D_{LIM})}{A_{\mathrm{true}}(D_{LIM})} = )"
-                        R"(\frac{1}{2})",
-            .lateral = true,
-            .trials = of_transfer::trials,
-            .evaluate = of_transfer::evaluate};
+    return {
+        .name = "D_LIM",
+        .title = "Lateral resolution",
+        .standard =
+            "Sinusoids (type PPS) of 6 to 40 pixels a period, or eighths of the optical resolution where pixels are "
+            "finer, in several directions, and a star (type ASG).",
+        .procedure =
+            "The transfer is the measured over the true amplitude, each by a least-squares fit, averaged "
+            "over the directions; its uncertainty is their scatter. D_LIM is the period at which it falls "
+            "to one half, linear in the frequency between the periods. On the star the transfer is found in rings.",
+        .equation = R"(\frac{A_{\mathrm{measured}}(D_{LIM})}{A_{\mathrm{true}}(D_{LIM})} = )"
+                    R"(\frac{1}{2})",
+        .lateral = true,
+        .trials = of_transfer::trials,
+        .evaluate = of_transfer::evaluate};
 }
 
 } // namespace vkfv::measurement

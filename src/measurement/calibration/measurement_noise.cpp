@@ -14,8 +14,7 @@ namespace {
 namespace of_noise { // files of a unity build share the unnamed namespace
 
 std::vector<double> contrasts_of(const Conditions& conditions) {
-    return conditions.small || conditions.fringes() ? std::vector{usual_contrast}
-                                                    : std::vector{0.05, 0.1, usual_contrast};
+    return conditions.small ? std::vector{usual_contrast} : std::vector{0.05, 0.1, usual_contrast};
 }
 
 int repetitions_of(const Conditions& conditions) {
@@ -97,15 +96,12 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
         raw.points.emplace_back(100 * contrast, of_points.value * nm);
         smooth.points.emplace_back(100 * contrast, of_waves.value * nm);
         const auto figure = [&](const char* filtered, const std::string& words, const Noise& noise) {
-            const bool fringes = conditions.fringes(); // of a mirror without a print
-            findings.figures.push_back(
-                {.key = fringes ? fmt::format("N_M{}_nm", filtered)
-                                : fmt::format("N_M{}_at_{:.0f}_percent_nm", filtered, 100 * contrast),
-                 .title = fringes ? "N_M" + words : fmt::format("N_M{}, contrast {:.0f} %", words, 100 * contrast),
-                 .unit = "nm",
-                 .value = noise.value * nm,
-                 .standard_uncertainty = noise.standard_uncertainty * nm,
-                 .degrees_of_freedom = repetitions - 1.0});
+            findings.figures.push_back({.key = fmt::format("N_M{}_at_{:.0f}_percent_nm", filtered, 100 * contrast),
+                                        .title = fmt::format("N_M{}, contrast {:.0f} %", words, 100 * contrast),
+                                        .unit = "nm",
+                                        .value = noise.value * nm,
+                                        .standard_uncertainty = noise.standard_uncertainty * nm,
+                                        .degrees_of_freedom = repetitions - 1.0});
         };
         figure("", "", of_points);
         figure("_filtered", fmt::format(", S-filter {:.3g} µm", conditions.s_filter() * um_per_mm), of_waves);
@@ -120,8 +116,7 @@ Findings evaluate(const Conditions& conditions, std::span<const TrialResult> res
     findings.remarks.push_back(
         conditions.camera ? "The repetitions are images of the same light: noise of the traced rays is common to them "
                             "and is not part of N_M."
-        : conditions.fringes() ? "Without [camera] images of fields have no noise but the stage's."
-                               : "Without [camera] the only noise is that of the traced rays.");
+                          : "Without [camera] the only noise is that of the traced rays.");
     return findings;
 }
 

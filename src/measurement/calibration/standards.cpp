@@ -31,9 +31,6 @@ std::string um(double mm) {
 }
 
 std::string printed(const Conditions& conditions, double contrast, std::uint32_t print_seed) {
-    if (conditions.fringes()) {
-        return "[specimen.material]\nscatter = \"mirror\"\n";
-    }
     constexpr double mean = 0.5;
     // A grain of one and a half pixels, or of the resolution of the optics where that is coarser.
     const double grain = 1.5 * std::max(conditions.pitch, conditions.resolution);
@@ -46,9 +43,7 @@ std::string printed(const Conditions& conditions, double contrast, std::uint32_t
 std::string standard_of(const Conditions& conditions, const std::string& kind, const std::string& keys,
                         double facet_pitch) {
     constexpr double margin = 1.1;
-    constexpr double limits = 20; // of resolution, beyond which fields hardly feel the standard's end
-    const double side = margin * conditions.longer_field() + 2 * conditions.blur +
-                        (conditions.fringes() ? limits * conditions.resolution : 0);
+    const double side = margin * conditions.longer_field() + 2 * conditions.blur;
     return fmt::format("[specimen]\nkind = \"{}\"\nsize_mm = {:.9g}\n{}{}", kind, side,
                        facet_pitch > 0 ? "pitch_um = " + um(facet_pitch) + "\n" : "representation = \"analytic\"\n",
                        keys);
@@ -76,9 +71,7 @@ void remark_shallower(const Conditions& conditions, const Groove& deepest, doubl
 
 std::string groove_standard(const Conditions& conditions, const Groove& groove, std::uint32_t print_seed) {
     // Steep walls stay clear of the thirds of the levels that ISO 5436-1 leaves out.
-    // Light of a wall does not come back to an interferometer: the narrowest wall hides the fewest points.
-    const double wall =
-        conditions.fringes() ? conditions.pitch : std::max(conditions.pitch, std::min(groove.depth, groove.width / 8));
+    const double wall = std::max(conditions.pitch, std::min(groove.depth, groove.width / 8));
     return standard_of(conditions, "groove",
                        fmt::format("width_um = {}\ndepth_um = {}\nwall_um = {}\n", um(groove.width), um(groove.depth),
                                    um(wall)),
@@ -90,7 +83,7 @@ std::string sinusoid_standard(const Conditions& conditions, double amplitude, do
                               double angle) {
     return standard_of(conditions, "sinusoid",
                        fmt::format("amplitude_um = {}\nperiod_um = {}\n", um(amplitude), um(period)),
-                       (conditions.fringes() ? 0.125 : 0.5) * conditions.pitch) +
+                       0.5 * conditions.pitch) +
            printed(conditions, usual_contrast, print_seed) + placed_at(0, 0, conditions.middle(), angle);
 }
 

@@ -3,7 +3,6 @@
 #include "core/files/digest.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/toml/toml_tables.hpp"
-#include "fields/interferometer.hpp"
 #include "measurement/calibration/standards.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "report/layout.hpp"
@@ -22,7 +21,6 @@ namespace {
 namespace of_tested_instrument { // files of a unity build share the unnamed namespace
 
 constexpr int small_side = 160, small_lateral_side = 320, small_images = 31;
-constexpr const char* plain_specimen = "[specimen]\nkind = \"plane\"\nsize_mm = 1.0\n";
 constexpr double small_paths = 64; // a pixel, backward, where the configuration traces forward
 
 // The canonical text with a square part of the detector's middle.
@@ -49,7 +47,7 @@ std::string with_pixels(const std::string& toml, int side, double pixel_um) {
 // keep their lengths.
 std::vector<TomlOverride> small_scan(const Configuration& base) {
     const auto positions = base.scan->positions();
-    if (positions.size() <= small_images || base.reference_arm) { // fringes need all
+    if (positions.size() <= small_images) {
         return {};
     }
     constexpr double sampling = 0.5; // in standard deviations of a focus curve, whose top then holds several images
@@ -83,14 +81,13 @@ std::string small_instrument(const Configuration& base, bool lateral) {
     const double paths =
         backward ? static_cast<double>(base.trace.rays) / static_cast<double>(pixels.count()) : small_paths;
     std::vector<TomlOverride> overrides = small_scan(base);
-    if (!base.reference_arm) {
-        overrides.push_back({"trace.rays", fmt::format("{:.0f}", std::ceil(paths * side * side)), origin_of_standards});
-    }
-    if (!backward && !base.reference_arm) {
+    overrides.push_back({"trace.rays", fmt::format("{:.0f}", std::ceil(paths * side * side)), origin_of_standards});
+    if (!backward) {
         overrides.push_back({"trace.estimator", "\"auto\"", origin_of_standards});
     }
     // Read once more, so that the text has the overrides' values.
-    const auto read = read_configuration(TomlTable::parse(toml + plain_specimen, base.file, overrides));
+    const auto read = read_configuration(
+        TomlTable::parse(toml + "[specimen]\nkind = \"plane\"\nsize_mm = 1.0\n", base.file, overrides));
     return without_entries(read.canonical, {"specimen"});
 }
 
@@ -102,8 +99,8 @@ TestedInstrument tested_instrument(const Configuration& base, TestedField field)
     TestedInstrument instrument{
         .toml = small ? of_tested_instrument::small_instrument(base, field == TestedField::small_lateral)
                       : without_entries(base.canonical, {"specimen"})};
-    const Configuration configuration =
-        read_configuration(TomlTable::parse(instrument.toml + of_tested_instrument::plain_specimen, base.file));
+    const Configuration configuration = read_configuration(
+        TomlTable::parse(instrument.toml + "[specimen]\nkind = \"plane\"\nsize_mm = 1.0\n", base.file));
     const auto assembled = assemble_for_figures(configuration);
     const auto& first_order = assembled.first_order;
     const auto positions = configuration.scan->positions();
@@ -124,16 +121,7 @@ TestedInstrument tested_instrument(const Configuration& base, TestedField field)
                              .blur = 0.5 * range * sine / std::sqrt(1 - sine * sine),
                              .camera = configuration.camera.has_value(),
                              .small = small,
-                             .seed = configuration.trace.seed,
-                             .fringe_wavelength = 0};
-    if (configuration.reference_arm) {
-        const auto& spectrum = configuration.instrument.spectrum;
-        const auto band = fields::fringe_band(spectrum, aperture, first_order.object_index);
-        constexpr double deviations = 2 * optics::gaussian_reach; // of a Gaussian spectrum, across the band
-        instrument.conditions.window = first_order.pixel_pitch;
-        instrument.conditions.curve_deviation = deviations / (band.most - band.least);
-        instrument.conditions.fringe_wavelength = spectrum.reference_um * mm_per_um;
-    }
+                             .seed = configuration.trace.seed};
     instrument.identity_digest = Digest().add(without_entries(configuration.identity, {"specimen"})).sha256();
     instrument.layout = report::layout_svg(assembled, base.file.stem().string());
     return instrument;

@@ -224,9 +224,6 @@ StackEvaluation::StackEvaluation(const topography::TopographyOptions& options, t
                                  std::optional<optics::Diffraction> diffraction, int images)
     : evaluator_(options, make_planes, curve_grid(images)), diffraction_(std::move(diffraction)) {
     evaluation_.options = options;
-    if (options.method != topography::HeightMethod::focus) {
-        fringes_.emplace(options, curve_grid(images));
-    }
     if (images > 0) {
         frames_.emplace(images);
     }
@@ -238,7 +235,7 @@ StackEvaluation::StackEvaluation(const topography::TopographyOptions& options, t
 
 void StackEvaluation::add(topography::Channels image, double z, std::optional<double> reading) {
     const Stopwatch stopwatch(evaluation_.seconds);
-    if (frames_ && columns_ == 0 && !fringes_) {
+    if (frames_ && columns_ == 0) {
         spdlog::info("focus is measured by {}", name_of(evaluation_.options.focus_measure.value()));
     }
     if (!image.empty()) {
@@ -251,16 +248,12 @@ void StackEvaluation::add(topography::Channels image, double z, std::optional<do
     if (diffraction_) {
         diffracted_->add({diffraction_->apply(image.front())}, z, reading);
     }
-    if (fringes_) {
-        fringes_->add(image, z, reading);
-        return;
-    }
     evaluator_.add(std::move(image), z, reading);
 }
 
 void StackEvaluation::reconstruct(double x0, double y0, double pitch, const KnownErrors& errors) {
     auto frames = std::async(std::launch::async, [&] { return frames_ ? frames_->finish() : report::Frames(); });
-    evaluation_.topography = fringes_ ? fringes_->finish(x0, y0, pitch) : evaluator_.finish(x0, y0, pitch);
+    evaluation_.topography = evaluator_.finish(x0, y0, pitch);
     auto noise = std::async(std::launch::async, [&] { return median_of(evaluation_.topography.height_noise); });
     if (const auto& flat = errors.flat) {
         auto corrected = topography::correct_flatness(std::move(evaluation_.topography.height), flat->heights);
@@ -311,10 +304,8 @@ Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& ban
         if (feature) {
             evaluation_.dimensions = standard_dimensions(
                 *feature, measured, known.undistorted,
-                fringes_ ? std::nullopt
-                         : std::optional(FocusEffects{
-                               .pull = &evaluation_.topography.brightness_pull,
-                               .window = {evaluation_.options.window_px, evaluation_.options.window_shape}}));
+                FocusEffects{.pull = &evaluation_.topography.brightness_pull,
+                             .window = {evaluation_.options.window_px, evaluation_.options.window_shape}});
             if (errors.hidden_uncertainty > 0) {
                 for (auto& dimension : evaluation_.dimensions) {
                     dimension.measured.standard_error = surface::undefined;

@@ -9,7 +9,6 @@
 #include "optics/waves/diffraction.hpp"
 #include "report/frames.hpp"
 #include "topography/compare.hpp"
-#include "topography/fringes.hpp"
 #include "topography/topography.hpp"
 
 #include <filesystem>
@@ -116,8 +115,7 @@ class StackEvaluation {
   private:
     void reconstruct(double x0, double y0, double pitch, const KnownErrors& errors);
 
-    topography::StackEvaluator evaluator_;               // by focus
-    std::optional<topography::FringeEvaluator> fringes_; // by fringes, instead
+    topography::StackEvaluator evaluator_;
     std::optional<optics::Diffraction> diffraction_;
     std::unique_ptr<StackEvaluation> diffracted_;
     std::optional<report::FrameTally> frames_;

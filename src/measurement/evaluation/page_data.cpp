@@ -168,23 +168,14 @@ Json curves_data(EvaluationData& data, const std::string& name, const Evaluation
     using topography::PeakMethod;
     const bool gaussian =
         evaluation.options.peak == PeakMethod::gaussian || evaluation.options.peak == PeakMethod::gaussian_fit;
-    // Of fringes the wave numbers, in rad/um, that their envelope and phase are of; none of focus.
-    const bool fringes = evaluation.options.method != topography::HeightMethod::focus;
-    const Json band = fringes ? Json{evaluation.options.least_wave_number / um_per_mm,
-                                     evaluation.options.most_wave_number / um_per_mm}
-                              : Json();
     return {{"columns", curves.columns},
             {"rows", curves.rows},
-            {"band", band},
             {"z", z},
             {"every", every},
             {"values", name + "-curves"},
             {"fits", name + "-fits"},
             {"gaussian", gaussian},
-            {"method", evaluation.options.method == topography::HeightMethod::phase ? "phase"
-                       : evaluation.options.method == topography::HeightMethod::envelope
-                           ? "envelope"
-                           : name_of(evaluation.options.peak)}};
+            {"method", name_of(evaluation.options.peak)}};
 }
 
 struct Distribution {

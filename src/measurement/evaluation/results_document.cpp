@@ -37,12 +37,7 @@ nlohmann::ordered_json json_of(const std::vector<Figures>& figures) {
 }
 
 nlohmann::ordered_json json_of(const topography::TopographyOptions& options) {
-    if (options.method != topography::HeightMethod::focus) {
-        return {{"method", options.method == topography::HeightMethod::phase ? "phase" : "envelope"},
-                {"repair_outliers", options.repair_outliers}};
-    }
-    return {{"method", "focus"},
-            {"focus_measure", name_of(options.focus_measure.value())},
+    return {{"focus_measure", name_of(options.focus_measure.value())},
             {"window_px", options.window_px},
             {"window_shape", name_of(options.window_shape)},
             {"smoothing_steps", options.smoothing_steps.value_or(0)},

@@ -122,14 +122,11 @@ double exposure_time(const Configuration& configuration, const optics::Instrumen
     if (options.control == camera::ExposureControl::time) {
         return options.exposure_time;
     }
-    // Fringes change from image to image, so that a few do not tell the brightest one.
     const auto heights = options.control == camera::ExposureControl::first ? std::vector{focal_heights.front()}
-                         : configuration.reference_arm ? std::vector(focal_heights.begin(), focal_heights.end())
-                                                       : probe_heights(focal_heights);
+                                                                           : probe_heights(focal_heights);
     auto few_rays = configuration.trace;
     few_rays.rays = std::clamp<std::uint64_t>(few_rays.rays / heights.size(), 1, most_probe_rays);
-    const auto tracer = configuration.reference_arm ? make_tracer(devices.first(), configuration, instrument, specimen)
-                                                    : devices.first().make_tracer(instrument, specimen, few_rays);
+    const auto tracer = devices.first().make_tracer(instrument, specimen, few_rays);
     const auto diffraction = make_diffraction(configuration, instrument);
     double brightest = 0;
     for (std::size_t k = 0; k < heights.size(); ++k) {

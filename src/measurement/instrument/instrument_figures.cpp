@@ -2,7 +2,6 @@
 
 #include "core/mathematics/units.hpp"
 #include "core/threads/threads.hpp"
-#include "fields/interferometer.hpp"
 #include "measurement/image/camera_report.hpp"
 #include "measurement/judgement/expectation.hpp"
 #include "measurement/judgement/plan_warnings.hpp"
@@ -415,11 +414,7 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
         }
         warn_of_size(*figures.specimen, first_order, quality, warnings);
         append(warnings, plan_warnings(configuration, instrument, figures.specimen->relief));
-        if (configuration.reference_arm) {
-            at_its_place(configuration, {.file = configuration.file}, [&] {
-                append(warnings, fields::warnings_of(fields::surface_of(instrument, configuration.instrument, made)));
-            });
-        } else if (configuration.scan && figures.specimen->relief.seen_share > 0) {
+        if (configuration.scan && figures.specimen->relief.seen_share > 0) {
             expected = expect(configuration, instrument, made, hidden_uncertainty);
             append(warnings, warnings_of(configuration, *expected));
             figures.groups.push_back(figures_of_expectation(configuration, *expected));

@@ -204,10 +204,6 @@ double depth_of_focus(const optics::FirstOrder& first_order) {
 }
 
 double evaluation_bytes(const Configuration& configuration, const optics::Instrument& instrument) {
-    if (configuration.reference_arm) { // all images, and some 150 bytes of each pixel's fit and maps
-        return static_cast<double>(configuration.instrument.detector_pixels.count()) *
-               (4 * configuration.scan->position_count() + 150);
-    }
     const auto options = evaluation_options(configuration, instrument);
     const double reach = std::ceil(3 * options.smoothing_steps.value_or(0));
     const double values = 2 * reach + 2 * options.peak_range_steps + 2 + 4 * reach + 4 * options.peak_range_steps + 4;
@@ -229,13 +225,11 @@ std::vector<Warning> plan_warnings(const Configuration& configuration, const opt
                     .relief = relief,
                     .positions = configuration.scan->positions(),
                     .depth = depth_of_focus(first_order)};
+    warn_of_depth(plan, warnings);
     warn_of_range(plan, warnings);
-    if (!configuration.reference_arm) { // all that follows is of focus
-        warn_of_depth(plan, warnings);
-        warn_of_step(plan, warnings);
-        warn_of_smoothing(plan, instrument, warnings);
-        warn_of_window(plan, warnings);
-    }
+    warn_of_step(plan, warnings);
+    warn_of_smoothing(plan, instrument, warnings);
+    warn_of_window(plan, warnings);
     warn_of_memory(plan, instrument, warnings);
     return warnings;
 }

@@ -93,13 +93,6 @@ Verdict verdict_on(const Configuration& configuration, const optics::Instrument&
                                         "by: most points will be left out.",
                                         1 / expected->texture_over_noise));
     }
-    if (configuration.reference_arm && configuration.scan && configuration.specimen) {
-        sentences.push_back(fmt::format("An interferometer of {:.3g}x/{:.3g} whose pixels see {}: its stack tells how "
-                                        "uncertain heights are.",
-                                        std::abs(first_order.magnification), first_order.numerical_aperture,
-                                        text_in_um(first_order.pixel_pitch)));
-        return verdict;
-    }
     if (!expected) {
         sentences.push_back(
             fmt::format("An instrument of {:.3g}x/{:.3g} whose pixels see {}. What can be measured with it takes {}.",

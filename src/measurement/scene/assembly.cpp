@@ -2,7 +2,6 @@
 
 #include "core/keys/section.hpp"
 #include "core/mathematics/units.hpp"
-#include "fields/interferometer.hpp"
 #include "images/image_file.hpp"
 #include "measurement/scene/light_field.hpp"
 #include "measurement/scene/specimen_view.hpp"
@@ -182,15 +181,6 @@ double focus_curve_deviation(const Configuration& configuration, const optics::F
 topography::TopographyOptions evaluation_options(const Configuration& configuration,
                                                  const optics::Instrument& instrument) {
     auto options = configuration.topography;
-    if (configuration.reference_arm) {
-        const auto band =
-            fields::fringe_band(configuration.instrument.spectrum, instrument.first_order.numerical_aperture,
-                                instrument.first_order.object_index);
-        options.least_wave_number = band.least;
-        options.most_wave_number = band.most;
-        options.smoothing_steps = 0;
-        return options;
-    }
     if (!options.smoothing_steps) {
         const double deviation = focus_curve_deviation(configuration, instrument.first_order);
         const auto positions = configuration.scan->positions();

@@ -1,6 +1,5 @@
 #include "measurement/scene/working_devices.hpp"
 
-#include "fields/device_interferometer.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/wave_devices.hpp"
 #include "scan/staged_tracer.hpp"
@@ -45,22 +44,30 @@ WorkingDevices::WorkingDevices(const std::string& selector) {
     }
 }
 
-std::unique_ptr<trace::Tracer> WorkingDevices::make_of_each(const TracerOfMember& make) const {
-    const auto make_one = [&](std::size_t place) -> std::unique_ptr<trace::Tracer> {
+std::unique_ptr<trace::Tracer> WorkingDevices::make_tracer(const optics::Instrument& instrument,
+                                                           const specimen::Specimen& specimen,
+                                                           const trace::TraceOptions& options) const {
+    const auto make = [&](std::size_t place) -> std::unique_ptr<trace::Tracer> {
+        auto of_member = options;
+        of_member.device = members_[place].selector;
+        of_member.batch_divisor = members_[place].batch_divisor;
+        if (of_member.device == "host") {
+            refuse_beyond_host(of_member, instrument);
+            return trace::make_host_tracer(instrument, specimen, of_member);
+        }
         try {
-            return make(place);
-        } catch (const InputError&) {
-            throw; // no device's fault
+            of_member.opened = members_[place].device;
+            return trace::make_device_tracer(instrument, specimen, of_member);
         } catch (const std::exception&) {
             trace::rethrow_as_failure_of(static_cast<int>(place));
         }
     };
     std::vector<std::future<std::unique_ptr<trace::Tracer>>> futures;
     for (std::size_t place = 1; place < members_.size(); ++place) {
-        futures.push_back(std::async(std::launch::async, make_one, place));
+        futures.push_back(std::async(std::launch::async, make, place));
     }
     std::vector<std::unique_ptr<trace::Tracer>> tracers;
-    tracers.push_back(make_one(0));
+    tracers.push_back(make(0));
     for (auto& future : futures) {
         tracers.push_back(future.get());
     }
@@ -69,51 +76,9 @@ std::unique_ptr<trace::Tracer> WorkingDevices::make_of_each(const TracerOfMember
     return tracer;
 }
 
-std::unique_ptr<trace::Tracer> WorkingDevices::make_tracer(const optics::Instrument& instrument,
-                                                           const specimen::Specimen& specimen,
-                                                           const trace::TraceOptions& options) const {
-    return make_of_each([&](std::size_t place) {
-        auto of_member = options;
-        of_member.device = members_[place].selector;
-        of_member.batch_divisor = members_[place].batch_divisor;
-        if (of_member.device == "host") {
-            refuse_beyond_host(of_member, instrument);
-            return trace::make_host_tracer(instrument, specimen, of_member);
-        }
-        of_member.opened = members_[place].device;
-        return trace::make_device_tracer(instrument, specimen, of_member);
-    });
-}
-
-std::unique_ptr<trace::Tracer> WorkingDevices::make_interferometer(const Configuration& configuration,
-                                                                   const optics::Instrument& instrument,
-                                                                   const specimen::Specimen& specimen,
-                                                                   fields::FocalRange range) const {
-    std::unique_ptr<trace::Tracer> tracer;
-    at_its_place(configuration, {.file = configuration.file}, [&] {
-        tracer = make_of_each([&](std::size_t place) {
-            const fields::ReferenceArm& arm = configuration.reference_arm.value();
-            return members_[place].selector == "host"
-                       ? fields::make_host_interferometer(instrument, configuration.instrument, specimen, arm, range)
-                       : fields::make_device_interferometer(members_[place].device, instrument,
-                                                            configuration.instrument, specimen, arm, range);
-        });
-    });
-    return tracer;
-}
-
 std::unique_ptr<trace::Tracer> make_tracer(const WorkingDevices& devices, const Configuration& configuration,
                                            const optics::Instrument& instrument, const specimen::Specimen& specimen) {
     auto motion = stage_motion(configuration);
-    if (configuration.reference_arm) {
-        // The fields hold for all heights at which the stage may stand.
-        const auto positions = configuration.scan ? configuration.scan->positions() : std::vector{0.0};
-        const double aside = motion ? motion->farthest(positions) : 0;
-        const auto [lowest, highest] = std::ranges::minmax(positions);
-        auto tracer = devices.make_interferometer(configuration, instrument, specimen,
-                                                  {.lowest = lowest - aside, .highest = highest + aside});
-        return motion ? scan::make_staged_tracer(std::move(tracer), std::move(*motion)) : std::move(tracer);
-    }
     if (!motion) {
         return devices.make_tracer(instrument, specimen, configuration.trace);
     }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "fields/interferometer.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/interface/tracer.hpp"
@@ -34,12 +33,6 @@ class WorkingDevices {
     std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                                const trace::TraceOptions& options) const;
 
-    // The interferometer of the configuration, for focal heights in this range.
-    std::unique_ptr<trace::Tracer> make_interferometer(const Configuration& configuration,
-                                                       const optics::Instrument& instrument,
-                                                       const specimen::Specimen& specimen,
-                                                       fields::FocalRange range) const;
-
     int size() const { return static_cast<int>(members_.size()); }
     WorkingDevices first() const; // the first device alone
 
@@ -48,9 +41,6 @@ class WorkingDevices {
     void take_note(const vulkan::DeviceFailure& failure);
 
   private:
-    using TracerOfMember = std::function<std::unique_ptr<trace::Tracer>(std::size_t place)>;
-    std::unique_ptr<trace::Tracer> make_of_each(const TracerOfMember& make) const;
-
     struct Member {
         explicit Member(std::string selector);
         void open(); // also opens a lost device again

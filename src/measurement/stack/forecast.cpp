@@ -60,9 +60,7 @@ class Prober {
     Probe expose(std::uint64_t rays) const {
         auto options = configuration_.trace;
         options.rays = std::min(rays, options.rays);
-        const auto tracer = configuration_.reference_arm
-                                ? make_tracer(devices_.first(), configuration_, instrument_, specimen_)
-                                : devices_.first().make_tracer(instrument_, specimen_, options);
+        const auto tracer = devices_.first().make_tracer(instrument_, specimen_, options);
         (void)tracer->expose(focal_height_, 0);
         Probe probe{.image = tracer->expose(focal_height_, 1), .device = tracer->identity().text()};
         if (configuration_.scan) {

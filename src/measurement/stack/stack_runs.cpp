@@ -171,7 +171,6 @@ void StackRuns::take_light(const Configuration& configuration, bool keep_surface
         light_ = Light{.key = key,
                        .parts = StackScene::make_parts(configuration, keep_surface ? &surfaces_ : nullptr),
                        .tracer = nullptr};
-        ++lights_made_;
     }
 }
 
@@ -206,23 +205,6 @@ StackRuns::Traced StackRuns::trace(const Configuration& configuration, Progress&
                   .device = identity.text()};
     });
     return result;
-}
-
-void StackRuns::with_light(const Configuration& configuration,
-                           const std::function<void(const StackScene&, const trace::Tracer&)>& work) {
-    WorkingDevices& devices = devices_of(configuration);
-    take_light(configuration, true);
-    const StackScene scene(configuration, light_->parts);
-    work_with_devices(devices, [&](const WorkingDevices& working) {
-        enter_stage("device, kernels");
-        // A failure must leave no tracer behind, since its device may be lost.
-        auto tracer = std::move(light_->tracer);
-        if (!tracer) {
-            tracer = make_tracer(working, configuration, scene.instrument, scene.specimen);
-        }
-        work(scene, *tracer);
-        light_->tracer = std::move(tracer);
-    });
 }
 
 } // namespace vkfv::measurement

@@ -10,7 +10,6 @@
 #include "trace/interface/tracer.hpp"
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,13 +50,6 @@ class StackRuns {
     // continues.
     Traced trace(const Configuration& configuration, Progress& progress, const scan::ImageVisitor& visit);
 
-    // Does the work with the scene and the tracer of the configuration's light, which stay for the next work of the
-    // same light. It writes no files. The work is done again from its beginning where a device failed. Throws
-    // InputError, DeviceError, and what the work throws.
-    void with_light(const Configuration& configuration,
-                    const std::function<void(const StackScene& scene, const trace::Tracer& tracer)>& work);
-    int lights_made() const { return lights_made_; }
-
     // The devices that the configuration asks for; open devices are used again.
     WorkingDevices& devices_of(const Configuration& configuration);
 
@@ -78,7 +70,6 @@ class StackRuns {
     std::optional<WorkingDevices> devices_;
     std::optional<Light> light_;
     Surfaces surfaces_;
-    int lights_made_ = 0;
 };
 
 } // namespace vkfv::measurement

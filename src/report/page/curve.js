@@ -38,26 +38,7 @@ vkfv.parts.push(() => {
         return {z, values, peak, uncertainty, fit: fit.filter(d => d[1] >= 0), column: curves.columns[column], row: curves.rows[row]};
     };
 
-    // The envelope of fringes, {mean, envelope: [...], phase: [...]}, by the Fourier transform over the band of wave numbers, rad/µm.
-    const fringes = ({z, values}, [least, most]) => {
-        const apart = 2 * Math.PI / (z.length * (z[1] - z[0]));
-        const mean = d3.mean(values);
-        const bins = d3.range(Math.max(1, Math.floor(least / apart)), Math.min(z.length / 2, most / apart + 1)).map(bin => {
-            const sum = sign => d3.sum(values, (value, k) => (value - mean) * sign(bin * apart * (z[k] - z[0])));
-            return {wave: bin * apart, real: sum(Math.cos), imaginary: -sum(Math.sin)};
-        });
-        const at = z.map(height => {
-            const part = (real, imaginary) => 2 / z.length * d3.sum(bins, bin => {
-                const turn = bin.wave * (height - z[0]);
-                return real(bin) * Math.cos(turn) + imaginary(bin) * Math.sin(turn);
-            });
-            return [part(bin => bin.real, bin => -bin.imaginary), part(bin => bin.imaginary, bin => bin.real)];
-        });
-        return {mean, envelope: at.map(([real, imaginary]) => Math.hypot(real, imaginary)),
-                phase: at.map(([real, imaginary]) => Math.atan2(imaginary, real))};
-    };
-
-    const draw = vkfv.chart("#curve", "Focus measure, or light of fringes, over the height of the focal plane", () => {
+    const draw = vkfv.chart("#curve", "Focus measure over the height of the focal plane", () => {
         const curve = vkfv.curve();
         if (!curve) {
             return null;
@@ -71,16 +52,6 @@ vkfv.parts.push(() => {
             marks.push({x: frames.z[vkfv.chosen.frame], quiet: true});
         }
         const extent = d3.extent([...curve.z, ...frames.z]);
-        const {band, every} = vkfv.chosen.evaluation.curves;
-        if (band && every === 1 && curve.z.length > 2) {
-            const {mean, envelope, phase} = fringes(curve, band);
-            const top = d3.max(envelope);
-            return {x: {label: "z / µm", domain: extent}, y: {label: "light; phase, ±π as high as the envelope"}, height: 340, marks,
-                    series: [{name: "fringes", dots: true, points: d3.zip(curve.z, curve.values)},
-                             {name: "envelope", points: d3.zip(curve.z, envelope.map(value => mean + value))},
-                             {name: "phase", points: d3.zip(curve.z, phase.map((value, k) =>
-                                 envelope[k] > top / 10 ? mean + top * value / Math.PI : mean))}]};
-        }
         return {x: {label: "z / µm", domain: extent}, y: {label: "focus measure", zero: true}, height: 340, marks,
                 series: [{name: "curve", dots: true, points: d3.zip(curve.z, curve.values)}, {name: "fit", points: curve.fit}]};
     });

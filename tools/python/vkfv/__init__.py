@@ -6,7 +6,7 @@
     stack.heights.sel(x=10, y=-5)      # um, at the pixel nearest to x = 10 um and y = -5 um
     stack.results["rms_deviation_um"]
 
-`vkfv.load` gives a scene in this process; all else is read from files. docs/python.md tells more.
+Everything is read from files; docs/python.md tells more.
 """
 
 from .array import Array
@@ -18,7 +18,6 @@ from .errors import DeviceError, Error, FolderInUse, InputError, RunError, RunWa
 from .fit import Fit
 from .focus import focus_curves
 from .program import find_program
-from .scene import Scene, Topography, load
 from .stack import PointState, Stack
 from .sweep import Sweep
 from .x3p import read_x3p
@@ -39,10 +38,8 @@ __all__ = [
     "PointState",
     "RunError",
     "RunWarning",
-    "Scene",
     "Stack",
     "Sweep",
-    "Topography",
     "budget",
     "calibrate",
     "capability",
@@ -52,7 +49,6 @@ __all__ = [
     "fit",
     "focus_curves",
     "image",
-    "load",
     "read_x3p",
     "run",
     "sweep",
