@@ -49,7 +49,7 @@ class PersistenceLimit {
     PersistenceLimit() = default;
     // The limit that curves of noise alone exceed with the probability `rate`, wherever in the scan they have their
     // maximum. neighbour_weights: of an image's neighbours, by their distance. curves_averaged: the curves are averaged
-    // by the same weights, so that neighbouring images are as strong as another. strong_texture: the correlation of
+    // by the same weights, so that neighbouring images count as equally strong. strong_texture: the correlation of
     // images of the stack's strong texture, if it is known. least_energy: of E, where J does not tell texture from
     // noise (tells()).
     PersistenceLimit(const IndependentImages& independent, const std::vector<double>& neighbour_weights,
