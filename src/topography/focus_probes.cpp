@@ -120,7 +120,7 @@ double largest_correlation(const std::vector<double>& a, const std::vector<doubl
 }
 
 // True if the mean of the values exceeds 0 by more than chance: by three standard errors, and by a tenth, since blocks
-// of compressed noise were found alike by 0.08.
+// of compressed noise (`jpeg` and `jpeg colour` of tools/studies/blank_stacks) were alike by 0.08.
 bool exceeds_chance(const std::vector<double>& values) {
     constexpr double least = 0.1, errors = 3;
     const auto count = static_cast<double>(values.size());
@@ -650,8 +650,8 @@ bool FocusProbes::reappears(const std::vector<PlaceOfImages>& places) const {
 }
 
 bool FocusProbes::lie_on_a_surface(const std::vector<PlaceOfImages>& places) {
-    constexpr std::size_t fewest_pairs = 16;
     constexpr double errors_of_chance = 3;
+    constexpr double fewest_pairs = 16; // the bound below is a quarter of chance's mean then, and for 9 pairs it is 0
     std::vector<double> images(places.size());
     std::ranges::transform(places, images.begin(),
                            [](const PlaceOfImages& place) { return static_cast<double>(place.image); });
@@ -722,7 +722,11 @@ std::optional<StrongTexture> FocusProbes::persistence_of_strong_texture(const st
         }
         const double beyond_independent = joint * joint - independent;
         shares[static_cast<std::size_t>(k)] = beyond_independent / (independent * (1 / kept - 1));
-        correlations[static_cast<std::size_t>(k)] = beyond_independent / (alike * alike - independent);
+        // Neighbours without any pattern have nothing that could be alike, and rounding alone is left of both.
+        constexpr double least_beyond = 1e-9;
+        const double if_alike = alike * alike - independent;
+        correlations[static_cast<std::size_t>(k)] =
+            if_alike > least_beyond * independent ? beyond_independent / if_alike : 0;
         const std::size_t neighbour = singles[at - 1] > singles[at + 1] ? at - 1 : at + 1;
         if (shares[static_cast<std::size_t>(k)] < persistent) {
             passing[static_cast<std::size_t>(k)] = {&probe, at, neighbour};

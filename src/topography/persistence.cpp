@@ -78,7 +78,7 @@ double PersistenceLimit::scale_of_chance(const focus::f64::CurveRecord& curve, d
     if (weight_ == 0 || curve.at == 0 || curve.at + 1 == static_cast<int>(kept_.size())) {
         return independent;
     }
-    // The neighbours' measures, by their sum and, since f E is a sum of squares, by that of their squares.
+    // The record has the sum of the two neighbours' measures, by its bend, and the sum of their squares, by f E.
     const double sum = 2 * curve.largest - curve.bend, largest = weight_ * curve.largest;
     const double beside = weight_beside_ * weight_beside_;
     const double squares = std::max((independent - largest * largest) / beside, 0.5 * sum * sum);
@@ -102,8 +102,12 @@ bool PersistenceLimit::exceeded_by(const focus::f64::CurveRecord& curve, double 
     const double joint = curve.joint * curve.joint, alone = curve.alone, independent = kept * alone;
     if (!tells()) {
         constexpr double persistent = 0.25, alike = 0.5;
-        return alone >= least_energy_ && (joint - independent >= persistent * (alone - independent) ||
-                                          joint - independent >= alike * (all_alike(curve) - independent));
+        // Chance makes patterns of a window alike by half in one place of twenty, where one image is far stronger than
+        // its neighbours: this counts only if the stack's strong texture is alike by as much.
+        const bool strong_alike = strong_texture_ && *strong_texture_ >= alike;
+        return alone >= least_energy_ &&
+               (joint - independent >= persistent * (alone - independent) ||
+                (strong_alike && joint - independent >= alike * (all_alike(curve) - independent)));
     }
     const double images = static_cast<double>(kept_.size());
     const double mean = independent_.mean, beyond = beyond_chance(window_share);

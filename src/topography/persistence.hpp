@@ -63,8 +63,8 @@ class PersistenceLimit {
     // True if the energy that makes the curve's maximum persists: J exceeds the limit of noise alone, or half of E
     // persists; and S rises above its mean along z by more than the noise there allows, so that a pattern in all images
     // (dust on the sensor) does not pass for texture in focus. Where the limit does not tell them apart, a quarter of E
-    // must persist, or the images' patterns be alike by half, and E be the least energy. window_share: pixels of the
-    // window that lie in the image, over those of a whole window.
+    // must persist, or the images' patterns be alike by half as those of the stack's strong texture are, and E be the
+    // least energy. window_share: pixels of the window that lie in the image, over those of a whole window.
     bool exceeded_by(const focus::f64::CurveRecord& curve, double window_share) const;
 
     // The value that J / (f E) must exceed where the whole window lies in the image; 0: there is no limit.
