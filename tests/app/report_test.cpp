@@ -13,9 +13,10 @@
 namespace vkfv::test {
 namespace {
 
-// Ubuntu has Chromium as a snap alone; elsewhere tools/setup installs it.
-bool has_chromium_package() {
-    return read_file("/etc/os-release").find("\nID=ubuntu") == std::string::npos;
+// Elsewhere tools/setup installs Chromium; Ubuntu has it as a snap alone, which a user of Ubuntu may do without. In CI
+// (hosts of CI set the variable of this name) a browser is always needed, so that no report goes unseen there.
+bool may_lack_a_browser() {
+    return std::getenv("CI") == nullptr && read_file("/etc/os-release").find("\nID=ubuntu") != std::string::npos;
 }
 
 // The checks of a report that do not hold, as text; none if there is no browser and none has to be installed.
@@ -25,7 +26,7 @@ std::optional<std::string> failures_of(const std::filesystem::path& results) {
                                 results.string() + "' > '" + told.string() + "' 2>&1";
     const int status = std::system(command.c_str());
     constexpr int no_browser = 77;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == no_browser && !has_chromium_package()) {
+    if (WIFEXITED(status) && WEXITSTATUS(status) == no_browser && may_lack_a_browser()) {
         return std::nullopt;
     }
     EXPECT_THAT(read_file(told), testing::HasSubstr("holds:"));
@@ -42,7 +43,7 @@ TEST(Report, OfAStackWorksInABrowser) {
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     const auto failures = failures_of(folder / "out");
     if (!failures) {
-        GTEST_SKIP() << "Ubuntu has no package of Chromium";
+        GTEST_SKIP() << "no browser, and Ubuntu has no package of Chromium";
     }
     EXPECT_EQ(*failures, "");
 }
@@ -58,7 +59,7 @@ TEST(Report, OfASweepWorksInABrowser) {
     ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
     const auto failures = failures_of(folder / "out");
     if (!failures) {
-        GTEST_SKIP() << "Ubuntu has no package of Chromium";
+        GTEST_SKIP() << "no browser, and Ubuntu has no package of Chromium";
     }
     EXPECT_EQ(*failures, "");
 }
